@@ -1,0 +1,1 @@
+//! What happens at one collision: probabilities, energies and moments of the particle models.

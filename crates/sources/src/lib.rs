@@ -1,0 +1,1 @@
+//! Uniform variates: seeded, scripted, counting.

@@ -1,0 +1,1 @@
+//! Mergeable moments, tests of a mean and a variance, and their verdicts.

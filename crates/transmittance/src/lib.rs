@@ -1,0 +1,1 @@
+//! Estimators of exp(-optical thickness), each beside its closed-form moments.

@@ -1,0 +1,1 @@
+//! OpenVDB fog volumes from bytes.

@@ -1,0 +1,1 @@
+//! Tests over the crates; see the files under `tests/`.
