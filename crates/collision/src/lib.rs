@@ -1,1 +1,32 @@
-//! What happens at one collision: probabilities, energies and moments of the particle models.
+//! What happens to a light particle at one collision.
+//!
+//! A walk meets collisions at the rate of a *sampling extinction* σ_samp. At each it looks up σ_t and forms the ratio
+//! r = σ_diff / σ_samp, where σ_diff = σ_t − σ_main is the extinction that a control leaves (szirmay-kalos-2017 eq. 5
+//! and 6). A collision model turns r into a scattered and a transmitted particle, each with a probability and an energy
+//! factor, such that (eq. 8)
+//!
+//! > E\[scattered energy\] = a · r,   E\[transmitted energy\] = 1 − r
+//!
+//! for every r that the model admits. That identity is the law of [`CollisionModel`], and all of unbiasedness.
+//!
+//! | model | source | admits |
+//! |---|---|---|
+//! | [`Woodcock`] | eq. 7 | 0 ≤ r ≤ 1 |
+//! | [`DoubleParticle`] | eq. 8, 10, 11 | every r |
+//! | [`SingleParticle`] terminating | eq. 9, 19 | 0 ≤ r ≤ 2 / (1 + a) |
+//! | [`SingleParticle`] non-terminating | eq. 9, 12 | every r |
+//! | [`SingleParticle`] adaptive | SimulateParticle, section 4.1 | every r |
+//!
+//! Transmittance keeps the transmitted branch only; free flight and particle tracing keep both.
+
+mod branch;
+mod double_particle;
+mod model;
+mod single_particle;
+mod woodcock;
+
+pub use branch::Branch;
+pub use double_particle::DoubleParticle;
+pub use model::{Albedo, AlbedoError, CollisionModel};
+pub use single_particle::{SingleParticle, Version};
+pub use woodcock::Woodcock;

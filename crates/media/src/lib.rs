@@ -1,1 +1,55 @@
-//! Extinction fields, their profile along a ray, and what is known of them.
+//! Extinction fields, and what is known of them.
+//!
+//! Everything that attenuates is seen as a [`Extinction`] field along one ray: σ_t(s) for a distance s in
+//! `[0, length]`. Knowledge beyond the look-up is a trait of its own, so that the type of an estimator says exactly what
+//! its paper assumes and a scene pays only for what it has:
+//!
+//! | trait | knowledge |
+//! |---|---|
+//! | [`Extinction`] | σ_t(s), by look-up |
+//! | [`Majorant`], [`Minorant`] | a bound of σ_t over the whole profile |
+//! | [`OpticalThickness`] | ∫ σ_t ds in closed form |
+//! | [`InvertOpticalThickness`] | the distance at which an optical thickness is reached, in closed form |
+//! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
+//!
+//! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
+//! Quadrature of a profile ([`RayQuadrature`]) is the reference that estimators are judged against; it is not an
+//! estimator.
+
+mod analytic_cosine;
+mod bounded;
+mod bounds;
+mod constant;
+mod error;
+mod expression;
+mod extinction;
+mod gradient_noise;
+mod homogeneous;
+mod lattice_planes;
+mod medium;
+mod perlin;
+mod piecewise_constant;
+mod piecewise_linear;
+mod quadrature;
+mod ray;
+mod voxels;
+mod watched;
+
+pub use analytic_cosine::AnalyticCosine;
+pub use bounded::Bounded;
+pub use bounds::{Bounds, Clip};
+pub use constant::Constant;
+pub use error::FieldError;
+pub use expression::{ExpressionError, ExpressionFieldError, ExpressionMedium, ExpressionProfile};
+pub use extinction::{
+    Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
+};
+pub use homogeneous::Homogeneous;
+pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
+pub use perlin::{Perlin, PerlinParameters};
+pub use piecewise_constant::PiecewiseConstant;
+pub use piecewise_linear::PiecewiseLinear;
+pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
+pub use ray::Ray;
+pub use voxels::{Lattice, Voxels};
+pub use watched::{Counted, Domain, Violation, Watched};

@@ -1,1 +1,65 @@
-//! Uniform variates: seeded, scripted, counting.
+//! Uniform variates, and nothing else: every random decision of the project is drawn from a [`UniformSource`].
+//!
+//! A source is always the last argument, mutable and explicit. There is no thread-local and no operating-system
+//! randomness anywhere, so that a number can be reproduced from its seed alone.
+//!
+//! * [`Seeded`]: xoshiro256++ (Blackman & Vigna 2021), one stream per batch.
+//! * [`Scripted`]: a fixed list that panics when it is exhausted: exact algebra and draw counts in tests.
+//! * [`Counting`]: how many variates a sampler draws.
+
+mod counting;
+mod scripted;
+mod seeded;
+
+pub use counting::Counting;
+pub use scripted::Scripted;
+pub use seeded::{Seeded, derive_seed};
+
+/// The largest variate that a source returns: 1 − 2^-53.
+pub const LARGEST_VARIATE: f64 = 1.0 - f64::EPSILON / 2.0;
+
+/// A sequence of independent variates, uniform on `[0, 1)`.
+///
+/// **Law.** Each variate is uniform on the lattice `k · 2^-53`, `k = 0 … 2^53 − 1`: 0 occurs, 1 never does, and `1 − u`
+/// is exact in double precision.
+pub trait UniformSource {
+    /// The next variate in `[0, 1)`.
+    fn next_uniform(&mut self) -> f64;
+
+    /// The next variate of the unit exponential distribution, −ln(1 − u): an optical distance.
+    ///
+    /// `1 − u` is never 0 on the lattice, so that the result is finite (at most 53 ln 2 = 36.7) for every variate. The
+    /// form −ln(u) that papers print is infinite at `u = 0` (szirmay-kalos-2017 eq. 4 and raab-2008 eq. 11 are right,
+    /// raab-2008 algorithm 1 is not).
+    #[inline]
+    fn next_exponential(&mut self) -> f64 {
+        -(1.0 - self.next_uniform()).ln()
+    }
+}
+
+impl<S: UniformSource + ?Sized> UniformSource for &mut S {
+    #[inline]
+    fn next_uniform(&mut self) -> f64 {
+        (**self).next_uniform()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_exponential_variate_is_finite_at_both_ends_of_the_lattice() {
+        let mut ends = Scripted::new([0.0, LARGEST_VARIATE]);
+        assert_eq!(ends.next_exponential(), 0.0);
+        assert!((ends.next_exponential() - 53.0 * std::f64::consts::LN_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_source_can_be_a_trait_object() {
+        let mut seeded = Seeded::new(1);
+        let expected = Seeded::new(1).next_uniform();
+        let object: &mut dyn UniformSource = &mut seeded;
+        assert_eq!(object.next_uniform(), expected);
+    }
+}

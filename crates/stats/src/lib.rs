@@ -1,1 +1,38 @@
-//! Mergeable moments, tests of a mean and a variance, and their verdicts.
+//! Statistics of estimators: mergeable moments, tests of a mean and a variance, and their verdicts.
+//!
+//! [`Moments`] observes, [`Reference`] says what should have come out, [`judge`] compares: sound, unsound, or not
+//! testable at this N. The parts are open to other uses: [`binomial`], [`bernstein`], [`normal`] and [`approximation`]
+//! are the tests of a mean and when they hold, [`family`] keeps the false alarm of many checks.
+//!
+//! The crate knows numbers only: no light transport, no files, clocks, threads or random sources.
+
+mod evidence;
+mod judge;
+mod mean_test;
+mod normal_test;
+mod variance_test;
+
+pub mod approximation;
+pub mod bernstein;
+pub mod binomial;
+pub mod binomial_inference;
+pub mod closed_moments;
+pub mod family;
+pub mod moments;
+pub mod normal;
+pub mod reference;
+pub mod verdict;
+
+pub use approximation::NormalApproximation;
+pub use bernstein::Bernstein;
+pub use binomial::{Binomial, BinomialError};
+pub use binomial_inference::{clopper_pearson, trials_needed};
+pub use closed_moments::ClosedMoments;
+pub use family::{holm_rejections, sidak_level};
+pub use judge::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER, judge};
+pub use moments::Moments;
+pub use reference::{Reference, Scores};
+pub use verdict::{MeanTest, StandardErrorSource, Verdict};
+
+#[cfg(test)]
+mod test_support;

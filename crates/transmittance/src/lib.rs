@@ -1,1 +1,49 @@
-//! Estimators of exp(-optical thickness), each beside its closed-form moments.
+//! Estimators of transmittance, T = exp(−∫ σ_t ds), each beside the closed form of its moments.
+//!
+//! An estimator is a small value prepared for one profile; [`TransmittanceEstimator::estimate`] draws. Its file holds
+//! the algorithm, its [`Theory`] (E\[T^k\], expected look-ups), its domain of validity and its source: that file is what
+//! one ports.
+//!
+//! | estimator | source | assumes |
+//! |---|---|---|
+//! | [`Woodcock`] | raab-2008 algorithm 1 | a majorant |
+//! | [`Tracking`] with the double particle model | szirmay-kalos-2017 4.2 | nothing (ratio and residual ratio tracking are special cases) |
+//! | [`Tracking`] with the single particle model | szirmay-kalos-2017 eq. 9 | the domain of its version |
+//! | [`LineIntegral`] | raab-2008 algorithm 2 | a majorant |
+//! | [`RayMarching`] | perlin-1989 | a biased baseline |
+//!
+//! ```
+//! use fairflight_collision::{Albedo, DoubleParticle};
+//! use fairflight_media::{Constant, PiecewiseLinear, Vacuum};
+//! use fairflight_sources::Seeded;
+//! use fairflight_transmittance::{Tracking, TransmittanceEstimator};
+//!
+//! // A ray of length 3 whose extinction rises and falls, sampled with an extinction below its maximum of 2.
+//! let field = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.0, 2.0, 0.0]).unwrap();
+//! let model = DoubleParticle { albedo: Albedo::new(0.0).unwrap() };
+//! let estimator = Tracking::new(model, Vacuum::new(3.0), Constant::new(1.5, 3.0).unwrap());
+//! let mut source = Seeded::new(1);
+//! let n = 200_000;
+//! let mean = (0..n).map(|_| estimator.estimate(&field, &mut source)).sum::<f64>() / f64::from(n);
+//! assert!((mean - (-3.0_f64).exp()).abs() < 0.004);
+//! ```
+
+mod estimator;
+mod explorers;
+mod line_integral;
+mod product_law;
+mod ray_marching;
+mod signed_product;
+mod theory;
+mod tracking;
+mod woodcock;
+
+pub use estimator::{TransmittanceEstimator, TransmittanceFunction};
+pub use explorers::{Explorers, TooFewExplorers};
+pub use line_integral::{LineIntegral, NoSplits};
+pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
+pub use ray_marching::{NoSteps, Offset, RayMarching};
+pub use signed_product::SignedProduct;
+pub use theory::{ClosedForm, Theory};
+pub use tracking::Tracking;
+pub use woodcock::Woodcock;

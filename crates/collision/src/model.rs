@@ -1,0 +1,58 @@
+//! The law of a collision model.
+
+use crate::Branch;
+use fairflight_sources::UniformSource;
+
+/// What happens at a collision with ratio `r = σ_diff / σ_samp`.
+///
+/// **Law.** For every admitted r: `scattered(r)` has the expected energy a·r, `transmitted(r)` the expected energy
+/// 1 − r (szirmay-kalos-2017 eq. 8), and [`transmit`](Self::transmit) draws the transmitted weight with exactly the
+/// probability and energy that `transmitted(r)` states.
+pub trait CollisionModel {
+    /// Whether the model is defined at `r`: where it is not, its probabilities are none.
+    fn admits(&self, r: f64) -> bool;
+
+    /// The scattered particle.
+    fn scattered(&self, r: f64) -> Branch;
+
+    /// The transmitted particle.
+    fn transmitted(&self, r: f64) -> Branch;
+
+    /// Draws the weight of the transmitted particle; `None` where no transmitted particle leaves and the walk ends.
+    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64>;
+}
+
+/// The probability that a collision with matter scatters: σ_s / σ_t, within \[0, 1\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub struct Albedo(f64);
+
+/// An albedo outside \[0, 1\].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("albedo must lie in [0, 1], found {found}")]
+pub struct AlbedoError {
+    /// What was given.
+    pub found: f64,
+}
+
+impl Albedo {
+    /// A checked albedo.
+    ///
+    /// # Errors
+    /// If `albedo` is NaN or outside \[0, 1\].
+    pub fn new(albedo: f64) -> Result<Self, AlbedoError> {
+        if (0.0..=1.0).contains(&albedo) { Ok(Self(albedo)) } else { Err(AlbedoError { found: albedo }) }
+    }
+
+    /// The number.
+    #[inline]
+    #[must_use]
+    pub fn get(self) -> f64 {
+        self.0
+    }
+}
+
+impl std::fmt::Display for Albedo {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}

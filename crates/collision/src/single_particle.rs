@@ -1,0 +1,102 @@
+//! The single particle model: at most one of the two particles is kept (szirmay-kalos-2017 eq. 9 and 12).
+
+use crate::{Albedo, Branch, CollisionModel};
+use fairflight_sources::UniformSource;
+
+/// How the probabilities q_scat and q_tran are chosen from a·|r| and |1 − r|.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// As they are: the particle may be absorbed, its energy stays ±1. Only where r ≥ 0 and their sum is at most 1.
+    Terminating,
+    /// Divided by their sum: exactly one particle survives, its energy is ± the sum (eq. 12).
+    NonTerminating,
+    /// Non-terminating where r < 1 or the sum exceeds 1, terminating elsewhere (SimulateParticle, section 4.1).
+    Adaptive,
+}
+
+/// Keeps one particle, or none, at random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SingleParticle {
+    /// How the probabilities are chosen.
+    pub version: Version,
+    /// σ_s / σ_t of matter. It enters the probabilities, and so the variance of transmittance too.
+    pub albedo: Albedo,
+}
+
+/// Three roundings, each of at most half a unit in the last place of a number below 2, can lift a·r + (r − 1) above 1 at
+/// the end of the terminating domain, r = 2 / (1 + a), where it equals 1 exactly.
+const ROUNDING_OF_THE_SUM: f64 = 3.0 * f64::EPSILON;
+
+impl SingleParticle {
+    fn sum(&self, r: f64) -> f64 {
+        self.albedo.get() * r.abs() + (1.0 - r).abs()
+    }
+
+    /// Whether the probabilities at `r` are taken as they are.
+    #[inline]
+    fn terminates(&self, r: f64) -> bool {
+        match self.version {
+            Version::Terminating => true,
+            Version::NonTerminating => false,
+            Version::Adaptive => r >= 1.0 && self.sum(r) <= 1.0,
+        }
+    }
+}
+
+impl CollisionModel for SingleParticle {
+    #[inline]
+    fn admits(&self, r: f64) -> bool {
+        match self.version {
+            Version::Terminating => r >= 0.0 && self.sum(r) <= 1.0 + ROUNDING_OF_THE_SUM,
+            Version::NonTerminating | Version::Adaptive => r.is_finite(),
+        }
+    }
+
+    fn scattered(&self, r: f64) -> Branch {
+        let sum = self.sum(r);
+        let wanted = self.albedo.get() * r.abs();
+        if wanted == 0.0 {
+            return Branch::NONE;
+        }
+        let (probability, absence, size) = if self.terminates(r) {
+            (wanted, 1.0 - wanted, 1.0)
+        } else {
+            (wanted / sum, (1.0 - r).abs() / sum, sum)
+        };
+        let energy = size.copysign(r);
+        Branch { probability, energy, absence, excess: energy - 1.0 }
+    }
+
+    #[inline]
+    fn transmitted(&self, r: f64) -> Branch {
+        let a = self.albedo.get();
+        let wanted = (1.0 - r).abs();
+        // r = 1: transmission has no weight and no probability. (At a = 0 eq. 12 is 0/0 there: the walk ends.)
+        if wanted == 0.0 {
+            return Branch::NONE;
+        }
+        if self.terminates(r) {
+            return if r <= 1.0 {
+                Branch { probability: wanted, energy: 1.0, absence: r, excess: 0.0 }
+            } else {
+                Branch { probability: wanted, energy: -1.0, absence: 2.0 - r, excess: -2.0 }
+            };
+        }
+        let sum = self.sum(r);
+        // sum − 1 = −(1 − a) r for 0 ≤ r ≤ 1, and (1 + a) |r| for r < 0: written so that a tiny r keeps its digits.
+        let (energy, excess) = if r > 1.0 {
+            (-sum, -sum - 1.0)
+        } else if r >= 0.0 {
+            (sum, -(1.0 - a) * r)
+        } else {
+            (sum, (1.0 + a) * -r)
+        };
+        Branch { probability: wanted / sum, energy, absence: a * r.abs() / sum, excess }
+    }
+
+    #[inline]
+    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
+        let transmitted = self.transmitted(r);
+        if source.next_uniform() < transmitted.probability { Some(transmitted.energy) } else { None }
+    }
+}

@@ -1,0 +1,166 @@
+//! The law of every collision model, and the closed forms of szirmay-kalos-2017 3.4, by exact algebra.
+
+use approx::assert_relative_eq;
+use fairflight_collision::{
+    Albedo, Branch, CollisionModel, DoubleParticle, SingleParticle, Version, Woodcock,
+};
+use fairflight_sources::{LARGEST_VARIATE, Scripted};
+
+const ALBEDOS: [f64; 5] = [0.0, 0.3, 0.5, 0.9, 1.0];
+const RATIOS: [f64; 15] =
+    [-1e3, -2.0, -0.5, -1e-9, 0.0, 1e-9, 0.25, 0.5, 1.0 - 1e-8, 1.0, 1.0 + 1e-8, 1.05, 1.5, 7.0, 1e3];
+
+fn albedo(a: f64) -> Albedo {
+    Albedo::new(a).unwrap()
+}
+
+fn single(version: Version, a: f64) -> SingleParticle {
+    SingleParticle { version, albedo: albedo(a) }
+}
+
+/// E[scattered] = a r and E[transmitted] = 1 − r; probabilities are probabilities.
+fn check_law(model: &impl CollisionModel, a: f64, exclusive: bool) {
+    for r in RATIOS.into_iter().chain([2.0 / (1.0 + a)]).filter(|&r| model.admits(r)) {
+        let (scattered, transmitted) = (model.scattered(r), model.transmitted(r));
+        assert_relative_eq!(scattered.moment(1), a * r, max_relative = 1e-14, epsilon = 1e-300);
+        assert_relative_eq!(transmitted.moment(1), 1.0 - r, max_relative = 1e-14);
+        for branch in [scattered, transmitted] {
+            assert!((0.0..=1.0 + 1e-15).contains(&branch.probability), "r = {r}: {branch:?}");
+        }
+        if exclusive {
+            assert!(scattered.probability + transmitted.probability <= 1.0 + 1e-15, "r = {r}, a = {a}");
+        }
+    }
+}
+
+#[test]
+fn every_model_obeys_equation_8() {
+    for a in ALBEDOS {
+        check_law(&Woodcock { albedo: albedo(a) }, a, true);
+        check_law(&DoubleParticle { albedo: albedo(a) }, a, false);
+        for version in [Version::Terminating, Version::NonTerminating, Version::Adaptive] {
+            check_law(&single(version, a), a, true);
+        }
+    }
+}
+
+#[test]
+fn terminating_ends_at_two_over_one_plus_albedo() {
+    for a in ALBEDOS {
+        let model = single(Version::Terminating, a);
+        let end = 2.0 / (1.0 + a);
+        assert!(model.admits(end) && model.admits(0.0));
+        assert!(!model.admits(end * (1.0 + 1e-12)) && !model.admits(-1e-300) && !model.admits(f64::NAN));
+    }
+}
+
+/// The variance introduction density over σ_samp, that is E[(W − 1)^2] (szirmay-kalos-2017 eq. 15).
+fn density(branch: Branch) -> f64 {
+    branch.moment_about_one(2)
+}
+
+#[test]
+fn variance_introduction_densities_are_those_of_the_paper() {
+    for a in ALBEDOS {
+        for r in RATIOS {
+            // eq. 17
+            assert_relative_eq!(density(DoubleParticle { albedo: albedo(a) }.transmitted(r)), r * r);
+            // eq. 20, in units of σ_samp: |σ_diff| = |r| σ_samp
+            let non_terminating = single(Version::NonTerminating, a);
+            let eq20 = r.abs() * (r.abs() + a * (1.0 - r).abs());
+            assert_relative_eq!(density(non_terminating.transmitted(r)), eq20, max_relative = 1e-12);
+            // eq. 19
+            let terminating = single(Version::Terminating, a);
+            if terminating.admits(r) {
+                let eq19 = if r <= 1.0 { r } else { r * (3.0 - 2.0 / r) };
+                assert_relative_eq!(density(terminating.transmitted(r)), eq19, max_relative = 1e-12);
+            }
+        }
+        // Equations 19 and 20 meet at r = 1 and at the end of the terminating domain.
+        for r in [1.0, 2.0 / (1.0 + a)] {
+            let [terminating, non_terminating] = [Version::Terminating, Version::NonTerminating]
+                .map(|version| density(single(version, a).transmitted(r)));
+            assert_relative_eq!(terminating, non_terminating, max_relative = 1e-12);
+        }
+    }
+}
+
+#[test]
+fn moments_about_zero_and_about_one_agree() {
+    for a in ALBEDOS {
+        for r in [-2.0, -0.5, 0.25, 1.0, 1.3, 7.0] {
+            for branch in [
+                single(Version::NonTerminating, a).transmitted(r),
+                single(Version::Adaptive, a).transmitted(r),
+                DoubleParticle { albedo: albedo(a) }.transmitted(r),
+            ] {
+                let raw = |k: i32| branch.moment(k);
+                // (W − 1)^4 expanded
+                let fourth = raw(4) - 4.0 * raw(3) + 6.0 * raw(2) - 4.0 * raw(1) + 1.0;
+                assert_relative_eq!(
+                    branch.moment_about_one(4),
+                    fourth,
+                    max_relative = 1e-10,
+                    epsilon = 1e-10
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tiny_ratio_keeps_its_digits() {
+    let r = 1e-9;
+    assert_relative_eq!(density(single(Version::NonTerminating, 0.0).transmitted(r)), r * r);
+    assert_relative_eq!(density(DoubleParticle { albedo: albedo(0.0) }.transmitted(r)), r * r);
+}
+
+#[test]
+fn draws_follow_the_stated_probabilities_at_both_ends_of_the_lattice() {
+    let ends = || Scripted::new([0.0, LARGEST_VARIATE]);
+    let woodcock = Woodcock { albedo: albedo(0.5) };
+    let mut source = ends();
+    // No matter: no variate collides. Nothing but matter: every variate does.
+    assert_eq!([0, 1].map(|_| woodcock.transmit(0.0, &mut source)), [Some(1.0); 2]);
+    let mut source = ends();
+    assert_eq!([0, 1].map(|_| woodcock.transmit(1.0, &mut source)), [None; 2]);
+
+    let model = single(Version::NonTerminating, 0.5);
+    let transmitted = model.transmitted(3.0);
+    let below = transmitted.probability - 1e-12;
+    let above = transmitted.probability + 1e-12;
+    assert_eq!(model.transmit(3.0, &mut Scripted::new([below])), Some(transmitted.energy));
+    assert_eq!(model.transmit(3.0, &mut Scripted::new([above])), None);
+    assert!(transmitted.energy < 0.0, "above r = 1 the transmitted energy is negative (eq. 11)");
+    // 0/0 at r = 1, a = 0: the walk ends.
+    assert_eq!(single(Version::NonTerminating, 0.0).transmit(1.0, &mut Scripted::new([0.0])), None);
+}
+
+#[test]
+fn adaptive_takes_the_version_of_simulate_particle() {
+    for a in [0.0, 0.5, 0.9] {
+        let [terminating, non_terminating, adaptive] =
+            [Version::Terminating, Version::NonTerminating, Version::Adaptive].map(|v| single(v, a));
+        let inside = 1.0 + 0.5 * (2.0 / (1.0 + a) - 1.0);
+        assert_eq!(adaptive.transmitted(inside), terminating.transmitted(inside));
+        for r in [-1.0, 0.5, 2.5] {
+            assert_eq!(adaptive.transmitted(r), non_terminating.transmitted(r));
+        }
+    }
+}
+
+#[test]
+fn a_wrong_sign_of_the_transmitted_energy_breaks_the_law() {
+    // Wrong twin: |1 − r| for 1 − r (eq. 11 without its sign).
+    let r = 1.5;
+    let twin = |r: f64| (1.0 - r).abs();
+    assert_eq!(DoubleParticle { albedo: albedo(0.5) }.transmitted(r).moment(1), 1.0 - r);
+    assert_eq!(twin(r) - (1.0 - r), 1.0, "the twin is wrong by 2 (r − 1)");
+}
+
+#[test]
+fn albedos_outside_the_unit_interval_are_refused() {
+    for bad in [-1e-9, 1.0 + 1e-9, f64::NAN, f64::INFINITY] {
+        assert!(Albedo::new(bad).is_err());
+    }
+}

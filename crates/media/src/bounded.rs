@@ -1,0 +1,54 @@
+//! A majorant that somebody claims for a field that knows none, or knows a looser one.
+
+use crate::{Breakpoints, Extinction, FieldError, Majorant, OpticalThickness};
+
+/// A field together with a claimed majorant.
+///
+/// The claim is a parameter, not knowledge: watch it at every look-up with [`crate::Watched`]. An estimator run with a
+/// majorant that is none is biased.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded<F> {
+    field: F,
+    majorant: f64,
+}
+
+impl<F: Extinction> Bounded<F> {
+    /// `field` with the claimed `majorant` \[1/length\].
+    ///
+    /// # Errors
+    /// If the majorant is negative or not finite.
+    pub fn new(field: F, majorant: f64) -> Result<Self, FieldError> {
+        FieldError::check_at_least("majorant", 0.0, majorant)?;
+        Ok(Self { field, majorant })
+    }
+}
+
+impl<F: Extinction> Extinction for Bounded<F> {
+    #[inline]
+    fn sigma_t(&self, s: f64) -> f64 {
+        self.field.sigma_t(s)
+    }
+    #[inline]
+    fn length(&self) -> f64 {
+        self.field.length()
+    }
+}
+
+impl<F: Extinction> Majorant for Bounded<F> {
+    #[inline]
+    fn majorant(&self) -> f64 {
+        self.majorant
+    }
+}
+
+impl<F: OpticalThickness> OpticalThickness for Bounded<F> {
+    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
+        self.field.optical_thickness(from, to)
+    }
+}
+
+impl<F: Breakpoints> Breakpoints for Bounded<F> {
+    fn breakpoints(&self) -> Vec<f64> {
+        self.field.breakpoints()
+    }
+}

@@ -1,0 +1,150 @@
+//! The gradient noise of Perlin 2002, on the permutation table of the library `noise`.
+//!
+//! The values are those of `noise::Perlin` to the last bit, which a test holds it to. The arithmetic is written again
+//! because twelve octaves at each look-up are the cost of the whole medium: here the corners of a cell share their hashes
+//! and a gradient is read from a table, where the library hashes each corner by itself and jumps to one of 16 cases.
+
+use glam::DVec3;
+use noise::permutationtable::{NoiseHasher, PermutationTable};
+
+/// The noise of one seed. It has period 256 along each axis.
+#[derive(Clone, Debug)]
+pub(crate) struct GradientNoise {
+    permutation: [u8; 256],
+}
+
+/// The twelve midpoints of the edges of a cube, four of them twice.
+const GRADIENTS: [[f64; 3]; 16] = [
+    [1.0, 1.0, 0.0],
+    [-1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [-1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [-1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [-1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, -1.0, 1.0],
+    [0.0, 1.0, -1.0],
+    [0.0, -1.0, -1.0],
+    [1.0, 1.0, 0.0],
+    [-1.0, 1.0, 0.0],
+    [0.0, -1.0, 1.0],
+    [0.0, -1.0, -1.0],
+];
+
+/// 2/√3, the library's factor. With it the noise would leave \[−1, 1\] here and there, and is clamped.
+const AMPLITUDE: f64 = 1.154_700_538_379_251_5;
+
+impl GradientNoise {
+    pub(crate) fn new(seed: u32) -> Self {
+        let table = PermutationTable::new(seed);
+        // The hash of a single coordinate is the entry of the table itself, a byte.
+        let mut permutation = [0; 256];
+        for (entry, coordinate) in permutation.iter_mut().zip(0..) {
+            *entry = (table.hash(&[coordinate]) & 0xff) as u8;
+        }
+        Self { permutation }
+    }
+
+    /// The noise in \[−1, 1\] at a point whose coordinates fit a 32-bit integer.
+    #[inline]
+    pub(crate) fn at(&self, point: DVec3) -> f64 {
+        debug_assert!(
+            point.abs().max_element() < 2f64.powi(31),
+            "the corner of the cell is a 32-bit integer"
+        );
+        let ((i, x), (j, y), (k, z)) = (split(point.x), split(point.y), split(point.z));
+
+        // The hash of a corner, axis by axis: two values for x, four with y, eight with z.
+        let entry = |index: u8| self.permutation[usize::from(index)];
+        let (k0, k1) = (k, k.wrapping_add(1));
+        let plane = |i: u8| {
+            let hash = entry(i);
+            let row = |j: u8| {
+                let hash = entry(hash ^ j);
+                (entry(hash ^ k0), entry(hash ^ k1))
+            };
+            (row(j), row(j.wrapping_add(1)))
+        };
+        let (((h000, h001), (h010, h011)), ((h100, h101), (h110, h111))) =
+            (plane(i), plane(i.wrapping_add(1)));
+
+        let (x1, y1, z1) = (x - 1.0, y - 1.0, z - 1.0);
+        let (u, v, w) = (quintic(x), quintic(y), quintic(z));
+        let near = mix(
+            mix(slope(h000, x, y, z), slope(h001, x, y, z1), w),
+            mix(slope(h010, x, y1, z), slope(h011, x, y1, z1), w),
+            v,
+        );
+        let far = mix(
+            mix(slope(h100, x1, y, z), slope(h101, x1, y, z1), w),
+            mix(slope(h110, x1, y1, z), slope(h111, x1, y1, z1), w),
+            v,
+        );
+        (mix(near, far, u) * AMPLITUDE).clamp(-1.0, 1.0)
+    }
+}
+
+/// The cell that holds a coordinate, modulo 256, and the distance from its lower end.
+#[inline]
+fn split(coordinate: f64) -> (u8, f64) {
+    // A truncation and a correction: without the instruction for it, `floor` is a call.
+    let truncated = coordinate as i32;
+    let cell = truncated - i32::from(f64::from(truncated) > coordinate);
+    ((cell & 0xff) as u8, coordinate - f64::from(cell))
+}
+
+/// The gradient of a corner times the offset from it.
+#[inline]
+fn slope(hash: u8, x: f64, y: f64, z: f64) -> f64 {
+    let [gx, gy, gz] = GRADIENTS[usize::from(hash & 15)];
+    gx * x + gy * y + gz * z
+}
+
+/// 6t⁵ − 15t⁴ + 10t³: from 0 to 1 with two vanishing derivatives at either end.
+#[inline]
+fn quintic(t: f64) -> f64 {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
+
+#[inline]
+fn mix(a: f64, b: f64, t: f64) -> f64 {
+    b * t + a * (1.0 - t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+    use noise::{NoiseFn, Perlin};
+
+    #[test]
+    fn the_values_are_those_of_the_library() {
+        let mut state = 5u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 * 2f64.powi(-53) - 0.5
+        };
+        for seed in [0, 1, 77, u32::MAX] {
+            let (ours, theirs) = (GradientNoise::new(seed), Perlin::new(seed));
+            for size in [1.0, 10.0, 1e3, 1e9] {
+                for _ in 0..5000 {
+                    let point = size * dvec3(next(), next(), next());
+                    assert_eq!(ours.at(point), theirs.get(point.to_array()), "{seed} {point}");
+                    // On planes, edges and corners of the lattice.
+                    for on_lattice in
+                        [point.with_x(point.x.round()), point.with_y(point.y.round()).with_z(-3.0)]
+                    {
+                        assert_eq!(
+                            ours.at(on_lattice),
+                            theirs.get(on_lattice.to_array()),
+                            "{seed} {on_lattice}"
+                        );
+                    }
+                    assert_eq!(ours.at(point.round()), 0.0);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The z-test of a mean, where N is large enough for the shape of the law and for the bias that should show.
+
+use crate::approximation::NormalApproximation;
+use crate::evidence::{Evidence, MeanJudgement, relative};
+use crate::judge::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
+use crate::moments::Moments;
+use crate::normal::upper_quantile;
+use crate::reference::Reference;
+use crate::verdict::MeanTest;
+
+/// The z-test, where N is large enough for the shape of the law.
+pub(crate) fn normal(measured: &Moments, reference: &Reference, mean: f64, level: f64) -> MeanJudgement {
+    let (n, closed) = (measured.count() as f64, reference.closed_moments());
+    let not_testable = |samples_needed: Option<f64>, why: String| MeanJudgement {
+        test: MeanTest::NotTestable,
+        outcome: None,
+        p: None,
+        detectable_relative_bias: None,
+        samples_needed,
+        reason: format!("not testable at N = {n}: {why}"),
+    };
+    let closed_variance = closed.and_then(|moments| moments.variance);
+    let Some(variance) = closed_variance.or_else(|| measured.sample_variance()) else {
+        return not_testable(None, "a single sample of a law with unknown variance".to_owned());
+    };
+    if variance.is_infinite() {
+        return not_testable(Some(f64::INFINITY), "the variance is infinite".to_owned());
+    }
+
+    // The shape: of the law where all of it is known, else of the sample, under stricter limits.
+    let test = NormalApproximation::for_level(level);
+    let closed_shape = closed.and_then(|moments| moments.skewness().zip(moments.excess_kurtosis()));
+    let sample_shape = measured.skewness().zip(measured.excess_kurtosis());
+    let (shape, needed, origin) = match (closed_shape, sample_shape) {
+        (Some((skewness, kurtosis)), _) => {
+            (closed_shape, test.samples_needed(skewness, kurtosis), "of the law")
+        }
+        (None, Some((skewness, kurtosis))) => {
+            (sample_shape, test.studentised_samples_needed(skewness, kurtosis), "of the sample")
+        }
+        (None, None) => (None, f64::INFINITY, "unknown"),
+    };
+    // N for the power: (critical z + z of the power) sqrt(variance/N) + 2 allowance = half of the mean.
+    let reach = test.critical_z + upper_quantile(1.0 - POWER);
+    let room = MAX_DETECTABLE_RELATIVE_BIAS * reference.mean.abs() - 2.0 * reference.allowance();
+    let for_power = if reference.mean == 0.0 {
+        0.0
+    } else if room > 0.0 {
+        reach * reach * variance / room / room
+    } else {
+        f64::INFINITY
+    };
+    let samples_needed = needed.max(for_power);
+    if n < needed {
+        let Some((skewness, kurtosis)) = shape else {
+            return not_testable(None, "the shape of the law is unknown".to_owned());
+        };
+        // The shape of a sample says nothing of what that sample has missed: no N can be promised from it.
+        let samples_needed = if closed_shape.is_some() { Some(samples_needed) } else { None };
+        return not_testable(
+            samples_needed,
+            format!(
+                "skewness^2/N = {:.2e} and excess kurtosis/N = {:.2e} {origin} exceed what a normal approximation \
+                 bears at z = {:.2} (with the exact standard error {:.2e} and {:.2e})",
+                skewness * skewness / n,
+                kurtosis / n,
+                test.critical_z,
+                test.skewness_limit(),
+                test.excess_kurtosis_limit()
+            ),
+        );
+    }
+    let error = (variance / n).sqrt();
+    let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
+    Evidence {
+        test: MeanTest::Normal,
+        p: Some(NormalApproximation::p_value(deviation / error)),
+        level,
+        detectable: relative(reach * error + 2.0 * reference.allowance(), reference),
+        samples_needed: &|| samples_needed,
+        name: match (closed_variance.is_some(), closed_shape.is_some()) {
+            (true, true) => "z with the closed-form standard error",
+            (true, false) => "z with the closed-form standard error, shape from the sample",
+            (false, _) => {
+                "z with the sample's standard error and shape, blind to events that the sample lacks"
+            }
+        },
+    }
+    .decide()
+}

@@ -1,0 +1,44 @@
+//! The law that every estimator of transmittance obeys.
+
+use fairflight_media::Extinction;
+use fairflight_sources::UniformSource;
+
+/// A random estimate of the transmittance of a whole profile.
+///
+/// **Law.** For every field whose values [`admits`](Self::admits) accepts,
+/// `E[estimate] = exp(−∫_0^length σ_t(s) ds)`. Estimates may be negative and may exceed 1; clamping them is a bias.
+///
+/// The bounds that an implementation puts on `F` are the knowledge that its paper assumes: look-ups only, a majorant, …
+/// An unbiased estimator never asks for the optical thickness of the field itself.
+pub trait TransmittanceEstimator<F: Extinction> {
+    /// Draws one estimate \[1\]. Variates come from `source` alone; nothing is allocated.
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64;
+
+    /// Whether the estimator is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
+    /// does not admit gets a biased estimate, not an error: watch the look-ups.
+    fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool;
+}
+
+/// A random estimate of transmittance as a function of distance.
+///
+/// **Law.** For every s in the profile, `E[T(s)] = exp(−∫_0^s σ_t)`, with T(s) the weight of the last entry at or before
+/// s times the control's transmittance up to s.
+pub trait TransmittanceFunction<F: Extinction>: TransmittanceEstimator<F> {
+    /// Draws one walk: its interaction points in increasing order, each with the weight of the walk *behind* it, without
+    /// the control's transmittance. Appends to `walk`.
+    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<(f64, f64)>);
+
+    /// The control's transmittance up to `s`.
+    fn main_transmittance(&self, s: f64) -> f64;
+}
+
+impl<F: Extinction, E: TransmittanceEstimator<F>> TransmittanceEstimator<F> for &E {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        (**self).estimate(field, source)
+    }
+    #[inline]
+    fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
+        (**self).admits(field, s, sigma_t)
+    }
+}

@@ -1,0 +1,165 @@
+//! Raab, Seibert & Keller's line integral (raab-2008 algorithm 2), for c = 1 at the far end and 0 on the way: transmittance.
+
+use crate::woodcock::{escapes, expected_lookups};
+use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use fairflight_media::{Breakpoints, Cumulative, Majorant, RayQuadrature, Tolerance, adaptive_integral};
+use fairflight_sources::UniformSource;
+
+/// n Woodcock flights whose first collisions are stratified by one random shift and conditioned to lie on the profile.
+///
+/// With p_V = 1 − exp(−majorant · S), the probability that a flight through the majorant collides at all,
+///
+/// > T̂ = (1 − p_V) + p_V · (number of flights that escape nevertheless) / n.
+///
+/// The first variates (k + ξ) p_V / n lie in \[0, p_V): only −ln(1 − u) puts the first collision on the profile. (The
+/// printed algorithm 1 takes −ln(u): a bias, 0.420 for 0.331 in one case.) They are off the 2^-53 lattice, so that
+/// `ln_1p` and `exp_m1` keep thin media exact.
+///
+/// **Law.** Unbiased for 0 ≤ σ_t ≤ majorant. Only the first step is stratified; later steps are independent.
+///
+/// **Moments.** The flights share ξ, so that this is no product over a Poisson process. Given ξ they are independent coins
+/// with escape probabilities g((k + ξ)/n), g(u) = (1 − σ_t(t)/majorant) T(t, S) at t = −ln(1 − u p_V)/majorant; the
+/// moments up to the 4th are integrals over ξ of those of the sum of coins.
+///
+/// **Cost.** One estimate is one set of n flights: n · majorant ∫T(0, s) ds / p_V look-ups (a Woodcock flight without
+/// collision costs nothing, and p_V is the probability that there is one).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineIntegral {
+    splits: u32,
+}
+
+/// A line integral needs at least one flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("splits must be at least 1, found 0")]
+pub struct NoSplits;
+
+impl LineIntegral {
+    /// The estimator with `splits` flights per estimate.
+    ///
+    /// # Errors
+    /// If `splits` is 0.
+    pub fn new(splits: u32) -> Result<Self, NoSplits> {
+        if splits == 0 { Err(NoSplits) } else { Ok(Self { splits }) }
+    }
+}
+
+/// p_V = 1 − exp(−majorant · S): the probability of a collision with the majorant's medium.
+fn collision_probability<F: Majorant>(field: &F) -> f64 {
+    -(-field.majorant() * field.length()).exp_m1()
+}
+
+impl<F: Majorant> TransmittanceEstimator<F> for LineIntegral {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        let p_volume = collision_probability(field);
+        if p_volume == 0.0 {
+            return 1.0;
+        }
+        let p_surface = (-field.majorant() * field.length()).exp();
+        let n = f64::from(self.splits);
+        let shift = source.next_uniform();
+        let mut escaped = 0_u32;
+        for k in 0..self.splits {
+            let u = (f64::from(k) + shift) / n * p_volume;
+            // Rounding may put u on p_V itself: such a flight counts as escaped, at a probability below 2^-50.
+            if escapes(field, 0.0, -(-u).ln_1p(), source) {
+                escaped += 1;
+            }
+        }
+        p_surface + p_volume * f64::from(escaped) / n
+    }
+
+    #[inline]
+    fn admits(&self, field: &F, _s: f64, sigma_t: f64) -> bool {
+        (0.0..=field.majorant()).contains(&sigma_t)
+    }
+}
+
+/// The escape probability of a flight as a function of its first variate.
+struct Escape<'a, F> {
+    field: &'a F,
+    optical_thickness: Cumulative<1>,
+    total: f64,
+    p_volume: f64,
+}
+
+impl<F: Majorant> Escape<'_, F> {
+    fn probability(&self, u: f64) -> f64 {
+        let majorant = self.field.majorant();
+        let t = (-(-u * self.p_volume).ln_1p() / majorant).min(self.field.length());
+        let behind = self.total - self.optical_thickness.at(t)[0];
+        ((1.0 - self.field.sigma_t(t) / majorant) * (-behind).exp()).clamp(0.0, 1.0)
+    }
+
+    /// The variate whose first collision is at `t`.
+    fn variate(&self, t: f64) -> f64 {
+        -(-self.field.majorant() * t).exp_m1() / self.p_volume
+    }
+}
+
+impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
+    fn theory(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        optical_thickness: f64,
+        tolerance: Tolerance,
+    ) -> Theory {
+        let p_volume = collision_probability(quadrature.field());
+        let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
+        if p_volume == 0.0 {
+            relative_central = [0.0; HIGHEST_MOMENT - 1];
+            return Theory {
+                relative_mean: 1.0,
+                relative_central,
+                log_relative_variance: f64::NEG_INFINITY,
+                relative_variance_error: 0.0,
+                lookups: 0.0,
+            };
+        }
+        let n = f64::from(self.splits);
+        let lookups = n * expected_lookups(quadrature, tolerance) / p_volume;
+        let cumulative = quadrature.cumulative(tolerance, |_, sigma_t| [sigma_t]);
+        let field = quadrature.field();
+        let total = cumulative.at(field.length())[0];
+        let escape = Escape { field, optical_thickness: cumulative, total, p_volume };
+        let transmittance = (-optical_thickness).exp();
+        // E[number of escapes] = n (T − p_S) / p_V
+        let mean = n * (transmittance - (1.0 - p_volume)) / p_volume;
+        let breaks: Vec<f64> = field.breakpoints().iter().map(|&t| (n * escape.variate(t)).fract()).collect();
+        let moments = adaptive_integral(1.0, &breaks, tolerance, |shift| {
+            let [first, second, third, fourth] =
+                coins((0..self.splits).map(|k| escape.probability((f64::from(k) + shift) / n)));
+            let d = first - mean;
+            // Central moments of a sum of an offset d and a centred variable with the given central moments.
+            [
+                d * d + second,
+                d.powi(3) + 3.0 * d * second + third,
+                d.powi(4) + 6.0 * d * d * second + 4.0 * d * third + fourth,
+            ]
+        });
+        let unit = p_volume / n / transmittance;
+        for (k, moment) in moments.value.into_iter().enumerate() {
+            relative_central[k] = moment * unit.powi(k as i32 + 2);
+        }
+        Theory {
+            relative_mean: 1.0,
+            relative_central,
+            log_relative_variance: relative_central[0].ln(),
+            relative_variance_error: moments.error[0] / moments.value[0],
+            lookups,
+        }
+    }
+}
+
+/// Mean, and the 2nd to 4th central moment, of the number of heads of independent coins.
+fn coins(probabilities: impl Iterator<Item = f64>) -> [f64; 4] {
+    let (mut mean, mut second, mut third, mut fourth_cumulant) = (0.0, 0.0, 0.0, 0.0);
+    for p in probabilities {
+        let variance = p * (1.0 - p);
+        mean += p;
+        second += variance;
+        third += variance * (1.0 - 2.0 * p);
+        fourth_cumulant += variance * (1.0 - 6.0 * variance);
+    }
+    [mean, second, third, 3.0 * second * second + fourth_cumulant]
+}

@@ -1,0 +1,102 @@
+//! Ray marching: the exponential of a Riemann sum (perlin-1989). **Biased**, and labelled so wherever it appears.
+
+use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
+use fairflight_sources::UniformSource;
+
+/// Where in its step each look-up lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offset {
+    /// In the middle: the midpoint rule, deterministic.
+    Fixed,
+    /// At one random offset, the same in every step. The Riemann sum is then unbiased, its exponential is not: by
+    /// Jensen's inequality E\[exp(−X)\] > exp(−E\[X\]) (raab-2008 section 1; szirmay-kalos-2017 section 2).
+    Jittered,
+}
+
+/// exp(−h Σ σ_t((k + offset) h)) with h = length / steps: a baseline that real estimators are compared with.
+///
+/// **Law.** None: its expectation is exp(−τ) only in the limit of many steps, or on a constant profile. [`Theory`] states
+/// the expectation it has instead.
+///
+/// **Cost.** `steps` look-ups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RayMarching {
+    steps: u32,
+    offset: Offset,
+}
+
+/// Ray marching needs at least one step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("steps must be at least 1, found 0")]
+pub struct NoSteps;
+
+impl RayMarching {
+    /// The baseline with `steps` equal steps.
+    ///
+    /// # Errors
+    /// If `steps` is 0.
+    pub fn new(steps: u32, offset: Offset) -> Result<Self, NoSteps> {
+        if steps == 0 { Err(NoSteps) } else { Ok(Self { steps, offset }) }
+    }
+
+    /// The Riemann sum with this offset in \[0, 1).
+    #[inline]
+    fn thickness<F: Extinction>(&self, field: &F, offset: f64) -> f64 {
+        let step = field.length() / f64::from(self.steps);
+        let sum: f64 = (0..self.steps).map(|k| field.sigma_t((f64::from(k) + offset) * step)).sum();
+        sum * step
+    }
+}
+
+impl<F: Extinction> TransmittanceEstimator<F> for RayMarching {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        let offset = match self.offset {
+            Offset::Fixed => 0.5,
+            Offset::Jittered => source.next_uniform(),
+        };
+        (-self.thickness(field, offset)).exp()
+    }
+
+    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
+        true
+    }
+}
+
+impl<F: Breakpoints> ClosedForm<F> for RayMarching {
+    fn theory(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        optical_thickness: f64,
+        tolerance: Tolerance,
+    ) -> Theory {
+        let field = quadrature.field();
+        // In units of T: exp(tau − X), which does not underflow with T.
+        let relative = |offset: f64| (optical_thickness - self.thickness(field, offset)).exp();
+        let lookups = f64::from(self.steps);
+        if self.offset == Offset::Fixed || field.length() == 0.0 {
+            return Theory {
+                relative_mean: relative(0.5),
+                relative_central: [0.0; HIGHEST_MOMENT - 1],
+                log_relative_variance: f64::NEG_INFINITY,
+                relative_variance_error: 0.0,
+                lookups,
+            };
+        }
+        let steps = lookups / field.length();
+        let breaks: Vec<f64> = field.breakpoints().iter().map(|s| (s * steps).fract()).collect();
+        let mean = adaptive_integral(1.0, &breaks, tolerance, |offset| [relative(offset)]).value[0];
+        let central = adaptive_integral(1.0, &breaks, tolerance, |offset| -> [f64; HIGHEST_MOMENT - 1] {
+            let deviation = relative(offset) - mean;
+            std::array::from_fn(|i| deviation.powi(i as i32 + 2))
+        });
+        Theory {
+            relative_mean: mean,
+            relative_central: central.value,
+            log_relative_variance: central.value[0].ln(),
+            relative_variance_error: central.error[0] / central.value[0],
+            lookups,
+        }
+    }
+}

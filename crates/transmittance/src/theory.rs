@@ -1,0 +1,42 @@
+//! What is known of an estimator before a sample is drawn.
+
+use crate::HIGHEST_MOMENT;
+use fairflight_media::{Extinction, RayQuadrature, Tolerance};
+
+/// The law of one estimate on one profile, in units of the transmittance T, so that nothing underflows with T.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Theory {
+    /// E\[estimate\] / T: 1, except for a biased baseline.
+    pub relative_mean: f64,
+    /// E\[(estimate − E)^k\] / T^k for k = 2 … 8 (index k − 2); NaN where no closed form is known, infinite where the
+    /// moment is.
+    pub relative_central: [f64; HIGHEST_MOMENT - 1],
+    /// ln(Var / T^2): finite where the variance itself overflows; −∞ for zero variance.
+    pub log_relative_variance: f64,
+    /// The absolute error of the variance's integral, relative to the variance.
+    pub relative_variance_error: f64,
+    /// The expected number of look-ups of one estimate.
+    pub lookups: f64,
+}
+
+/// An estimator whose law is known in closed form, up to quadrature over the ray.
+pub trait ClosedForm<F: Extinction> {
+    /// Moments and expected look-ups on the profile of `quadrature`, whose transmittance is exp(−`optical_thickness`).
+    fn theory(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        optical_thickness: f64,
+        tolerance: Tolerance,
+    ) -> Theory;
+}
+
+impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
+    fn theory(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        optical_thickness: f64,
+        tolerance: Tolerance,
+    ) -> Theory {
+        (**self).theory(quadrature, optical_thickness, tolerance)
+    }
+}
