@@ -1,1 +1,69 @@
-//! The harness.
+//! The harness: the only program of the project, and its only input and output.
+//!
+//! Data flows one way: a [`spec`] says what is asked for, a [`plan`] makes it fit together, [`measure`](mod@measure) draws, the
+//! analysis of an [`experiment`] compares with the [`reference`](mod@reference), and writers turn the [`result`] into JSON, CSV, Markdown,
+//! plots and a page. Writers read results only.
+//!
+//! [`run`] is the whole program: arguments, streams, exit code.
+
+mod cli;
+mod environment;
+mod estimate;
+mod failure;
+
+pub mod experiment;
+pub mod measure;
+pub mod plan;
+pub mod reference;
+pub mod report;
+pub mod result;
+pub mod spec;
+
+pub use environment::{Environment, Terminal};
+pub use failure::{DONE, Failure, NOT_WRITTEN, REFUSED, UNSOUND};
+
+use clap::Parser;
+use cli::{Cli, Command};
+use std::ffi::OsString;
+use std::io::{Read, Write};
+
+/// Runs the program with these arguments (the first is its name) and streams; returns the exit code.
+///
+/// Data goes to `stdout` or into files, everything for a person to `stderr`.
+pub fn run(
+    arguments: impl IntoIterator<Item = impl Into<OsString>>,
+    stdin: &mut dyn Read,
+    stdout: &mut dyn Write,
+    stderr: &mut dyn Write,
+    terminal: Terminal,
+) -> i32 {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let cli = match Cli::try_parse_from(&arguments) {
+        Ok(cli) => cli,
+        Err(error) => return answer_without_running(&error, stdout, stderr),
+    };
+    let environment = Environment::new(&arguments, terminal);
+    let outcome = match cli.command {
+        Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
+        _ => Ok(DONE),
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(failure) => {
+            // Nobody is left to tell if standard error is closed.
+            let _ = writeln!(stderr, "{failure}");
+            failure.code()
+        }
+    }
+}
+
+/// Help and version go to standard output with code 0, a command line that cannot be read is refused.
+fn answer_without_running(error: &clap::Error, stdout: &mut dyn Write, stderr: &mut dyn Write) -> i32 {
+    let text = error.render();
+    let (stream, code): (&mut dyn Write, i32) =
+        if error.use_stderr() { (stderr, REFUSED) } else { (stdout, DONE) };
+    match write!(stream, "{text}") {
+        Ok(()) => code,
+        Err(_) => NOT_WRITTEN,
+    }
+}

@@ -1,3 +1,15 @@
-//! Thin binary.
+//! The program: everything is in the library, so that tests drive it as a user would.
 
-fn main() {}
+use fairflight_harness::Terminal;
+use std::io::{self, IsTerminal};
+
+fn main() -> std::process::ExitCode {
+    let code = fairflight_harness::run(
+        std::env::args_os(),
+        &mut io::stdin().lock(),
+        &mut io::stdout().lock(),
+        &mut io::stderr(),
+        Terminal { progress: io::stderr().is_terminal() },
+    );
+    std::process::ExitCode::from(u8::try_from(code).unwrap_or(u8::MAX))
+}

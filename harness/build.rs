@@ -1,0 +1,23 @@
+//! Tells the program which revision it was built from.
+
+use std::process::Command;
+
+fn main() {
+    println!("cargo::rerun-if-changed=../.git/HEAD");
+    println!("cargo::rerun-if-changed=../.git/logs/HEAD");
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    // Without git, or outside a checkout (an unpacked archive), the version is all there is.
+    let revision = match git(&["rev-parse", "--short=12", "HEAD"]) {
+        Some(revision)
+            if git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|s| s.is_empty()) =>
+        {
+            revision
+        }
+        Some(revision) => format!("{revision}+changes"),
+        None => format!("v{}", env!("CARGO_PKG_VERSION")),
+    };
+    println!("cargo::rustc-env=FAIRFLIGHT_REVISION={revision}");
+}

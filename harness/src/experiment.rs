@@ -1,0 +1,176 @@
+//! One experiment from its plan to its result: predict, measure, analyse.
+
+use crate::Failure;
+use crate::measure::{Measurement, measure};
+use crate::plan::{
+    AnyEstimator, Estimator, EstimatorJob, Field, FieldJob, KnownField, Lawful, Plan, ThicknessMethod,
+};
+use crate::reference::{Prediction, Truth, explain, predict};
+use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, ReferenceResult};
+use fairflight_media::{Tolerance, Violation};
+use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, Scores, judge};
+
+/// Runs a plan.
+///
+/// # Errors
+/// If the experiment is refused, before or while it runs.
+pub fn run_experiment(
+    plan: &Plan,
+    provenance: Provenance,
+    advance: &(dyn Fn(u64) + Sync),
+) -> Result<ExperimentResult, Failure> {
+    let truth = Truth::of(&plan.profile, Tolerance::TIGHT)?;
+    let prediction = predict(&plan.profile, &plan.estimator, &truth, Tolerance::TIGHT)?;
+    let measurement = measure_plan(plan, &truth, advance)?;
+    Ok(analyse(plan, &truth, &prediction, &measurement, provenance))
+}
+
+/// Draws the samples of a plan.
+///
+/// # Errors
+/// If a look-up is not lawful, or an estimate not finite.
+pub fn measure_plan(
+    plan: &Plan,
+    truth: &Truth,
+    advance: &(dyn Fn(u64) + Sync),
+) -> Result<Measurement, Failure> {
+    plan.profile.with(Draw { plan, truth, advance })
+}
+
+#[derive(Clone, Copy)]
+struct Draw<'a> {
+    plan: &'a Plan,
+    truth: &'a Truth,
+    advance: &'a (dyn Fn(u64) + Sync),
+}
+
+impl FieldJob for Draw<'_> {
+    type Output = Result<Measurement, Failure>;
+    fn run<F: KnownField>(self, field: &F) -> Self::Output
+    where
+        for<'a> &'a F: Field,
+    {
+        self.plan.estimator.with(field, self)?
+    }
+}
+
+impl EstimatorJob for Draw<'_> {
+    type Output = Result<Measurement, Failure>;
+    fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
+        let Plan { profile, estimator: any, samples, seed, .. } = self.plan;
+        let upper_bound = self.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
+        let place = |violation: Violation| explain(profile, any, self.truth, violation);
+        measure(Lawful { field, estimator, upper_bound }, *samples, *seed, &place, self.advance)
+    }
+}
+
+/// Below this, 1/T overflows or T has lost digits: such a transmittance is judged as it stands.
+const LEAST_UNIT: f64 = 1e-300;
+
+/// Puts what was measured beside what is known.
+#[must_use]
+pub fn analyse(
+    plan: &Plan,
+    truth: &Truth,
+    prediction: &Prediction,
+    measurement: &Measurement,
+    provenance: Provenance,
+) -> ExperimentResult {
+    let Measurement { moments, lookups_per_sample, seconds } = *measurement;
+    let n = moments.count() as f64;
+    let transmittance = truth.transmittance();
+    let theory = &prediction.theory;
+
+    // In units of T, so that the powers of a small transmittance do not underflow.
+    let unit = if transmittance > LEAST_UNIT { transmittance } else { 1.0 };
+    let closed = closed_moments(prediction, transmittance / unit, unit == transmittance);
+    let reference = Reference {
+        mean: transmittance / unit,
+        error: truth.error() / unit,
+        moments: Some(closed),
+        scores: scores(&plan.estimator, prediction, truth, unit),
+    };
+    let verdict = judge(&moments.scaled(1.0 / unit), &reference, DEFAULT_ALPHA);
+
+    let known = closed.variance.is_some();
+    let scale = |value: f64, power: i32| value * unit.powi(power);
+    let mean_error = closed.standard_error(n).map(|e| scale(e, 1)).or_else(|| moments.standard_error());
+    let variance_error =
+        closed.variance_standard_error(n).map(|e| scale(e, 2)).or_else(|| moments.variance_standard_error());
+    let log_variance = 2.0 * -truth.optical_thickness + theory.log_relative_variance;
+    let preparation = plan.estimator.preparation_lookups() as f64;
+    let lookups = lookups_per_sample + preparation;
+    let mean = moments.mean().unwrap_or(f64::NAN);
+    let efficiency = |cost: f64| {
+        let variance = moments.population_variance().filter(|variance| *variance > 0.0 && cost > 0.0)?;
+        let bias = mean - transmittance;
+        Some(1.0 / ((variance + bias * bias) * cost))
+    };
+    ExperimentResult {
+        estimate: Estimate {
+            mean,
+            mean_standard_error: mean_error,
+            variance: moments.sample_variance(),
+            variance_standard_error: variance_error,
+            minimum: moments.minimum().unwrap_or(f64::NAN),
+            maximum: moments.maximum().unwrap_or(f64::NAN),
+        },
+        reference: ReferenceResult {
+            transmittance,
+            optical_thickness: truth.optical_thickness,
+            variance: known.then(|| log_variance.exp()),
+            log_variance: Some(log_variance).filter(|log| known && *log != f64::NEG_INFINITY),
+            error: truth.error(),
+            lookups_per_sample: Some(theory.lookups + preparation),
+            method: method(plan, truth, prediction, known),
+        },
+        cost: Cost { samples: moments.count(), lookups_per_sample: lookups, seconds },
+        efficiency: Efficiency { per_lookup: efficiency(lookups), per_second: efficiency(seconds / n) },
+        verdict: verdict.into(),
+        provenance,
+    }
+}
+
+/// The closed moments in the unit of the verdict.
+fn closed_moments(prediction: &Prediction, mean: f64, relative: bool) -> ClosedMoments {
+    let theory = &prediction.theory;
+    // Where T itself underflows, T^2 and higher do: the moments are zero, not unknown.
+    let central: Vec<Option<f64>> = theory
+        .relative_central
+        .iter()
+        .map(|&moment| if relative || moment == 0.0 { Some(moment) } else { None })
+        .map(|moment| moment.filter(|moment| !moment.is_nan()))
+        .collect();
+    ClosedMoments::from_central(mean, &central)
+}
+
+fn scores(_estimator: &AnyEstimator, _prediction: &Prediction, _truth: &Truth, _unit: f64) -> Scores {
+    Scores::Unbounded
+}
+
+/// How the reference is known, in words.
+fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> String {
+    let thickness = match truth.method {
+        ThicknessMethod::ClosedForm => "closed form",
+        ThicknessMethod::GaussPerCell => "two-point Gauss-Legendre per voxel cell (exact)",
+        ThicknessMethod::Quadrature => "adaptive Gauss-Kronrod quadrature",
+    };
+    let variance = match plan.estimator {
+        AnyEstimator::Woodcock { .. } => "variance: closed form T(1 - T)",
+        AnyEstimator::DoubleParticle(_) | AnyEstimator::SingleParticle(_) => {
+            "variance: szirmay-kalos-2017 eq. 16, integrated over the ray"
+        }
+        AnyEstimator::LineIntegral { .. } => "variance: quadrature over the shared shift",
+        AnyEstimator::RayMarching(_) => "variance: quadrature over the offset (a biased baseline)",
+    };
+    let errors =
+        if known { "standard errors: closed-form moments" } else { "standard errors: sample moments" };
+    let mut method = format!("optical thickness: {thickness}; {variance}; {errors}");
+    if truth.transmittance() == 0.0 {
+        method.push_str("; the transmittance underflows to 0 in double precision");
+    }
+    if prediction.theory.relative_variance_error > 1e-3 {
+        method.push_str("; the quadrature of the variance did not converge");
+    }
+    method
+}

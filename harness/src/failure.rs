@@ -1,0 +1,66 @@
+//! Why a run ends without a result, and with which exit code.
+
+use std::fmt;
+use std::path::Path;
+
+/// Exit code 0: done, nothing unsound.
+pub const DONE: i32 = 0;
+/// Exit code 1: a law failed; the results are still written.
+pub const UNSOUND: i32 = 1;
+/// Exit code 2: refused, nothing written.
+pub const REFUSED: i32 = 2;
+/// Exit code 3: the output could not be written.
+pub const NOT_WRITTEN: i32 = 3;
+
+/// An end without a result: one line for a person, and an exit code.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// Bad input, or found in the run: a NaN in a medium, a majorant that is none.
+    Refused(String),
+    /// The output could not be written.
+    NotWritten(String),
+}
+
+impl Failure {
+    /// A refusal.
+    pub fn refused(reason: impl fmt::Display) -> Self {
+        Self::Refused(one_line(&reason.to_string()))
+    }
+
+    /// An output that could not be written to `path`.
+    pub fn not_written(path: &Path, reason: impl fmt::Display) -> Self {
+        Self::NotWritten(one_line(&format!("cannot write {}: {reason}", path.display())))
+    }
+
+    /// The same failure, with where it happened in front.
+    #[must_use]
+    pub fn within(self, place: impl fmt::Display) -> Self {
+        match self {
+            Self::Refused(reason) => Self::refused(format!("{place}: {reason}")),
+            Self::NotWritten(reason) => Self::NotWritten(format!("{place}: {reason}")),
+        }
+    }
+
+    /// The exit code.
+    #[must_use]
+    pub fn code(&self) -> i32 {
+        match self {
+            Self::Refused(_) => REFUSED,
+            Self::NotWritten(_) => NOT_WRITTEN,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused(reason) => write!(f, "refused: {reason}"),
+            Self::NotWritten(reason) => write!(f, "{reason}"),
+        }
+    }
+}
+
+/// Messages of libraries may span lines; a person gets one.
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}

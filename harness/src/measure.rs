@@ -1,0 +1,102 @@
+//! Drawing estimates in parallel, the same ones whatever the number of threads.
+
+use crate::Failure;
+use crate::plan::{Estimator, Field, Lawful};
+use cpu_time::ThreadTime;
+use fairflight_laws::{BATCH, batch_count, batch_moments, batch_size, draw_batch};
+use fairflight_media::{Counted, Violation, Watched};
+use fairflight_sources::Seeded;
+use fairflight_stats::Moments;
+use rayon::prelude::*;
+
+/// What was measured of one estimator on one profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// Moments of the estimates.
+    pub moments: Moments,
+    /// Look-ups per estimate, without those of the preparation.
+    pub lookups_per_sample: f64,
+    /// CPU seconds over all threads of the loop that drew the estimates, without counting their look-ups.
+    pub seconds: f64,
+}
+
+/// Look-ups are counted in a second run over the same variates, of at most this many samples: a run that does not count
+/// is the one that is timed, and a mean of a million counts is known to a thousandth.
+const MOST_COUNTED: u64 = 1 << 20;
+
+/// Batches in flight before their moments are merged: memory does not grow with the number of samples.
+const CHUNK: u64 = 1 << 9;
+
+/// One batch, as a thread returns it.
+struct Batch {
+    moments: Moments,
+    seconds: f64,
+    lookups: u64,
+    counted: u64,
+}
+
+/// Draws `samples` estimates from `seed`. `advance` is told how many samples were added.
+///
+/// # Errors
+/// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), or an estimate is not
+/// finite.
+pub fn measure<G: Field, E: Estimator<G>>(
+    lawful: Lawful<G, E>,
+    samples: u64,
+    seed: u64,
+    place: &(dyn Fn(Violation) -> Failure + Sync),
+    advance: &(dyn Fn(u64) + Sync),
+) -> Result<Measurement, Failure> {
+    let batches = batch_count(samples);
+    let mut moments = Moments::new();
+    let (mut seconds, mut lookups, mut counted) = (0.0, 0, 0);
+    for start in (0..batches).step_by(CHUNK as usize) {
+        let chunk: Vec<Result<Batch, Failure>> = (start..batches.min(start + CHUNK))
+            .into_par_iter()
+            .map_init(
+                || Vec::with_capacity(BATCH as usize),
+                |values, index| {
+                    let batch = one_batch(lawful, samples, seed, index, values, place)?;
+                    advance(batch_size(samples, index));
+                    Ok(batch)
+                },
+            )
+            .collect();
+        // In the order of the batches: the first failure and the last bit of each moment are the same on every run.
+        for batch in chunk {
+            let batch = batch?;
+            moments.merge(&batch.moments);
+            seconds += batch.seconds;
+            lookups += batch.lookups;
+            counted += batch.counted;
+        }
+    }
+    Ok(Measurement { moments, lookups_per_sample: lookups as f64 / counted as f64, seconds })
+}
+
+fn one_batch<G: Field, E: Estimator<G>>(
+    lawful: Lawful<G, E>,
+    samples: u64,
+    seed: u64,
+    index: u64,
+    values: &mut Vec<f64>,
+    place: &(dyn Fn(Violation) -> Failure + Sync),
+) -> Result<Batch, Failure> {
+    let estimator = lawful.estimator;
+    let watched = Watched::new(lawful.field, lawful);
+    let clock = ThreadTime::now();
+    draw_batch(seed, index, samples, values, |source: &mut Seeded| estimator.estimate(&watched, source));
+    let seconds = clock.elapsed().as_secs_f64();
+    if let Some(violation) = watched.violation() {
+        return Err(place(violation));
+    }
+    let moments = batch_moments(seed, index, values).map_err(Failure::refused)?;
+    let (mut lookups, mut counted) = (0, 0);
+    if index * BATCH < MOST_COUNTED {
+        let counting = Counted::new(watched);
+        draw_batch(seed, index, samples, values, |source: &mut Seeded| estimator.estimate(&counting, source));
+        lookups = counting.lookups();
+        counted = values.len() as u64;
+    }
+    Ok(Batch { moments, seconds, lookups, counted })
+}

@@ -1,0 +1,129 @@
+//! Media and their bounds, built once and shared by all rays.
+
+use super::VoxelLattice;
+use crate::Failure;
+use crate::spec::{BoundsSpec, MediumKind, MediumSpec};
+use fairflight_media::{AnalyticCosine, Bounds, ExpressionMedium, Homogeneous, Perlin, Voxels};
+use fairflight_volumes::{Affine, VoxelGrid, read_float_grid};
+use glam::{DAffine3, DVec3};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+/// A medium of any kind.
+#[derive(Clone, Debug)]
+pub enum AnyMedium {
+    /// The same everywhere.
+    Homogeneous(Arc<Homogeneous>),
+    /// szirmay-kalos-2017 eq. 21.
+    AnalyticCosine(Arc<AnalyticCosine>),
+    /// Noise.
+    Perlin(Arc<Perlin>),
+    /// A formula.
+    Expression(Arc<ExpressionMedium>),
+    /// Voxels of a file.
+    Voxels(Arc<Voxels<VoxelLattice>>),
+}
+
+/// The media that were built so far: the points of a sweep share a file and its voxels.
+#[derive(Debug, Default)]
+pub struct MediumLibrary {
+    volumes: Mutex<HashMap<VolumeKey, Volume>>,
+}
+
+type VolumeKey = (PathBuf, Option<String>, u64);
+type Volume = (Arc<Voxels<VoxelLattice>>, Bounds);
+
+impl MediumLibrary {
+    /// The medium of a spec, and its bounds.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a parameter is not lawful.
+    pub fn build(&self, spec: &MediumSpec) -> Result<(AnyMedium, Bounds), Failure> {
+        let given = spec.bounds.map(|bounds| build_bounds(&bounds)).transpose()?;
+        // A medium without bounds of its own was given some: the spec saw to it.
+        let unbounded = || Failure::refused("profile.medium.bounds: this key is missing");
+        Ok(match &spec.kind {
+            MediumKind::Homogeneous { sigma_t } => {
+                let medium = Homogeneous::new(*sigma_t).map_err(in_medium)?;
+                (AnyMedium::Homogeneous(Arc::new(medium)), given.ok_or_else(unbounded)?)
+            }
+            MediumKind::AnalyticCosine { scale } => {
+                let medium = AnalyticCosine::new(*scale).map_err(in_medium)?;
+                let bounds = given.unwrap_or_else(AnalyticCosine::default_bounds);
+                (AnyMedium::AnalyticCosine(Arc::new(medium)), bounds)
+            }
+            MediumKind::Perlin(parameters) => {
+                let medium = Perlin::new(*parameters).map_err(in_medium)?;
+                (AnyMedium::Perlin(Arc::new(medium)), given.ok_or_else(unbounded)?)
+            }
+            MediumKind::Expression { sigma_t, majorant } => {
+                let medium = ExpressionMedium::new(sigma_t, *majorant)
+                    .map_err(|error| Failure::refused(format!("profile.medium.sigma_t: {error}")))?;
+                (AnyMedium::Expression(Arc::new(medium)), given.ok_or_else(unbounded)?)
+            }
+            MediumKind::Vdb { file, grid, scale } => {
+                let (medium, bounds) = self.volume(file, grid.as_deref(), *scale)?;
+                (AnyMedium::Voxels(medium), given.unwrap_or(bounds))
+            }
+        })
+    }
+
+    fn volume(&self, file: &Path, grid: Option<&str>, scale: f64) -> Result<Volume, Failure> {
+        let key = (file.to_owned(), grid.map(str::to_owned), scale.to_bits());
+        let mut volumes = self.volumes.lock().expect("no thread panics while it reads a volume");
+        if let Some(volume) = volumes.get(&key) {
+            return Ok(volume.clone());
+        }
+        let in_file = |error: &dyn std::fmt::Display| {
+            Failure::refused(format!("profile.medium.file: {}: {error}", file.display()))
+        };
+        let bytes = std::fs::read(file).map_err(|error| in_file(&error))?;
+        let grid = read_float_grid(&bytes, grid).map_err(|error| in_file(&error))?;
+        let bounds = grown_bounds(&grid).ok_or_else(|| in_file(&"the grid has no active voxel"))?;
+        let index_from_world = glam_affine(&grid.index_from_world());
+        let medium = Voxels::new(VoxelLattice(grid), index_from_world, scale).map_err(in_medium)?;
+        let volume = (Arc::new(medium), bounds);
+        volumes.insert(key, volume.clone());
+        Ok(volume)
+    }
+}
+
+fn in_medium(error: impl std::fmt::Display) -> Failure {
+    Failure::refused(format!("profile.medium: {error}"))
+}
+
+fn build_bounds(spec: &BoundsSpec) -> Result<Bounds, Failure> {
+    match *spec {
+        BoundsSpec::Sphere { center, radius } => Bounds::sphere(center, radius),
+        BoundsSpec::Box { min, max } => Bounds::aligned_box(min, max),
+    }
+    .map_err(|error| Failure::refused(format!("profile.medium.bounds: {error}")))
+}
+
+/// The world box of the active voxels grown by one voxel; `None` if nothing is active.
+fn grown_bounds(grid: &VoxelGrid) -> Option<Bounds> {
+    let (low, high) = grid.active_bounds()?;
+    let transform = glam_affine(&grid.world_from_index());
+    let corner = |bits: usize| {
+        let pick = |axis: usize| {
+            if bits >> axis & 1 == 0 { f64::from(low[axis]) - 1.0 } else { f64::from(high[axis]) + 1.0 }
+        };
+        transform.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
+    };
+    let corners = (0..8).map(corner);
+    let (min, max) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), corner| {
+        (min.min(corner), max.max(corner))
+    });
+    Some(Bounds::Box { min, max })
+}
+
+fn glam_affine(affine: &Affine) -> DAffine3 {
+    let axis = |v: [f64; 3]| DVec3::from_array(affine.apply_vector(v));
+    DAffine3::from_cols(
+        axis([1.0, 0.0, 0.0]),
+        axis([0.0, 1.0, 0.0]),
+        axis([0.0, 0.0, 1.0]),
+        DVec3::from_array(affine.apply_point([0.0; 3])),
+    )
+}

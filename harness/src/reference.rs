@@ -1,0 +1,231 @@
+//! The truth about a planned experiment, before a sample is drawn; and whether the experiment is lawful at all.
+
+use crate::Failure;
+use crate::plan::{
+    AnyEstimator, AnyProfile, Estimator, EstimatorJob, Field, FieldJob, Knowledge, KnownField, Lawful,
+    ThicknessMethod,
+};
+use fairflight_media::{Domain, RayQuadrature, Tolerance, Violation};
+use fairflight_transmittance::Theory;
+
+/// The optical thickness of a profile, and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth {
+    /// ∫ σ_t ds.
+    pub optical_thickness: f64,
+    /// Bound of its absolute error.
+    pub thickness_error: f64,
+    /// How it is known.
+    pub method: ThicknessMethod,
+    /// Facts about the profile.
+    pub knowledge: Knowledge,
+    /// The least and the greatest value of σ_t that was met.
+    pub observed: (f64, f64),
+}
+
+impl Truth {
+    /// exp(−∫ σ_t ds).
+    #[must_use]
+    pub fn transmittance(&self) -> f64 {
+        (-self.optical_thickness).exp()
+    }
+
+    /// Bound of the absolute error of the transmittance.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        self.transmittance() * self.thickness_error.exp_m1()
+    }
+
+    /// The truth about a profile.
+    ///
+    /// # Errors
+    /// If σ_t is not finite somewhere, exceeds the majorant that the profile declares, or cannot be integrated.
+    pub fn of(profile: &AnyProfile, tolerance: Tolerance) -> Result<Self, Failure> {
+        profile.with(Integrate { profile, tolerance })
+    }
+}
+
+struct Integrate<'a> {
+    profile: &'a AnyProfile,
+    tolerance: Tolerance,
+}
+
+/// Rounding of a closed form, relative to ∫ |σ_t|: a few dozen terms, each rounded a few times.
+const CLOSED_FORM_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+impl FieldJob for Integrate<'_> {
+    type Output = Result<Truth, Failure>;
+
+    fn run<F: KnownField>(self, field: &F) -> Self::Output
+    where
+        for<'a> &'a F: Field,
+    {
+        let knowledge = field.knowledge();
+        let mut quadrature = RayQuadrature::new(field, &[]);
+        let bound = knowledge.upper_bound.unwrap_or(f64::INFINITY);
+        // A closed form needs the integral of |sigma_t| only, roughly: its rounding is relative to that.
+        let tolerance =
+            if knowledge.optical_thickness.is_some() { Tolerance::to(0.1) } else { self.tolerance };
+        let integral = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t, sigma_t.abs()]);
+        let mut observed = (f64::INFINITY, f64::NEG_INFINITY);
+        for (s, sigma_t) in quadrature.nodes() {
+            if !sigma_t.is_finite() {
+                return Err(not_finite(self.profile, s, sigma_t));
+            }
+            if sigma_t > bound {
+                return Err(above_declared(self.profile, s, sigma_t, bound));
+            }
+            observed = (observed.0.min(sigma_t), observed.1.max(sigma_t));
+        }
+        let (optical_thickness, thickness_error) = match knowledge.optical_thickness {
+            Some(exact) => (exact, CLOSED_FORM_ROUNDING * integral.value[1]),
+            None => (integral.value[0], integral.error[0]),
+        };
+        if !optical_thickness.is_finite() || !thickness_error.is_finite() {
+            return Err(Failure::refused(
+                "profile: sigma_t cannot be integrated: its optical thickness is not finite",
+            ));
+        }
+        Ok(Truth { optical_thickness, thickness_error, method: knowledge.method, knowledge, observed })
+    }
+}
+
+fn not_finite(profile: &AnyProfile, s: f64, sigma_t: f64) -> Failure {
+    Failure::refused(format!("profile: sigma_t is {sigma_t} at {}", profile.place(s)))
+}
+
+fn above_declared(profile: &AnyProfile, s: f64, sigma_t: f64, bound: f64) -> Failure {
+    Failure::refused(format!(
+        "profile: sigma_t = {sigma_t} exceeds the declared majorant {bound} at {}",
+        profile.place(s)
+    ))
+}
+
+/// Why a look-up was not lawful, in words.
+#[must_use]
+pub fn explain(
+    profile: &AnyProfile,
+    estimator: &AnyEstimator,
+    truth: &Truth,
+    violation: Violation,
+) -> Failure {
+    let Violation { s, sigma_t } = violation;
+    if !sigma_t.is_finite() {
+        return not_finite(profile, s, sigma_t);
+    }
+    if let Some(bound) = truth.knowledge.upper_bound
+        && sigma_t > bound
+    {
+        return above_declared(profile, s, sigma_t, bound);
+    }
+    let place = profile.place(s);
+    Failure::refused(match estimator {
+        AnyEstimator::Woodcock { majorant } | AnyEstimator::LineIntegral { majorant, .. } => {
+            if sigma_t < 0.0 {
+                format!("estimator.majorant: needs sigma_t of at least 0, but sigma_t = {sigma_t} at {place}")
+            } else {
+                format!("estimator.majorant: {majorant} is none, since sigma_t = {sigma_t} at {place}")
+            }
+        }
+        AnyEstimator::DoubleParticle(tracking) => {
+            explain_ratio(&place, tracking.ratio_at(s, sigma_t), sigma_t)
+        }
+        AnyEstimator::SingleParticle(tracking) => {
+            explain_ratio(&place, tracking.ratio_at(s, sigma_t), sigma_t)
+        }
+        AnyEstimator::RayMarching(_) => format!("estimator: not defined for sigma_t = {sigma_t} at {place}"),
+    })
+}
+
+fn explain_ratio(place: &str, ratio: Option<f64>, sigma_t: f64) -> String {
+    match ratio {
+        None => format!(
+            "estimator.sigma_samp: is 0 where sigma_t − control is not (a silent bias): sigma_t = {sigma_t} at {place}"
+        ),
+        Some(r) => format!(
+            "estimator.version: terminating needs 0 <= r <= 2/(1 + albedo), but r = (sigma_t − control)/sigma_samp = \
+             {r} at {place}"
+        ),
+    }
+}
+
+/// What is known of an estimator on a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// The law of one estimate, in units of T.
+    pub theory: Theory,
+    /// The range of σ_t that was met while integrating.
+    pub observed: (f64, f64),
+}
+
+/// The law of `estimator` on `profile`, whose truth is known.
+///
+/// # Errors
+/// If the estimator is not defined somewhere on the profile: a majorant that is none, a version outside its domain, a
+/// sampling extinction of zero where it may not be.
+pub fn predict(
+    profile: &AnyProfile,
+    estimator: &AnyEstimator,
+    truth: &Truth,
+    tolerance: Tolerance,
+) -> Result<Prediction, Failure> {
+    if let (Some(majorant), Some(maximum)) = (estimator.claimed_majorant(), truth.knowledge.maximum)
+        && maximum > majorant
+        && profile.length() > 0.0
+    {
+        return Err(Failure::refused(format!(
+            "estimator.majorant: {majorant} is none, since sigma_t reaches {maximum}"
+        )));
+    }
+    profile.with(Predict { profile, estimator, truth, tolerance })
+}
+
+#[derive(Clone, Copy)]
+struct Predict<'a> {
+    profile: &'a AnyProfile,
+    estimator: &'a AnyEstimator,
+    truth: &'a Truth,
+    tolerance: Tolerance,
+}
+
+impl FieldJob for Predict<'_> {
+    type Output = Result<Prediction, Failure>;
+    fn run<F: KnownField>(self, field: &F) -> Self::Output
+    where
+        for<'a> &'a F: Field,
+    {
+        self.estimator.with(field, self)?
+    }
+}
+
+impl EstimatorJob for Predict<'_> {
+    type Output = Result<Prediction, Failure>;
+
+    fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
+        let mut quadrature = RayQuadrature::new(field, &self.estimator.breakpoints());
+        let upper_bound = self.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
+        let lawful = Lawful { field, estimator, upper_bound };
+        // Before the integrals, so that a bad value is named and not integrated.
+        self.check(&quadrature, &lawful)?;
+        let theory = estimator.theory(&mut quadrature, self.truth.optical_thickness, self.tolerance);
+        let observed = self.check(&quadrature, &lawful)?;
+        Ok(Prediction { theory, observed })
+    }
+}
+
+impl Predict<'_> {
+    fn check<G: Field>(
+        &self,
+        quadrature: &RayQuadrature<G>,
+        domain: &impl Domain,
+    ) -> Result<(f64, f64), Failure> {
+        let mut observed = self.truth.observed;
+        for (s, sigma_t) in quadrature.nodes() {
+            if !(sigma_t.is_finite() && domain.admits(s, sigma_t)) {
+                return Err(explain(self.profile, self.estimator, self.truth, Violation { s, sigma_t }));
+            }
+            observed = (observed.0.min(sigma_t), observed.1.max(sigma_t));
+        }
+        Ok(observed)
+    }
+}

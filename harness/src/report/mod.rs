@@ -1,0 +1,3 @@
+//! `harness report`: measure, then write.
+
+pub mod result;

@@ -1,0 +1,163 @@
+//! The medium of a ray.
+
+use super::Node;
+use super::node::Object;
+use crate::Failure;
+use fairflight_media::PerlinParameters;
+use glam::DVec3;
+use std::path::PathBuf;
+
+/// A medium with its bounds, as given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MediumSpec {
+    /// What fills the bounds.
+    pub kind: MediumKind,
+    /// Where the medium is; without it, the kind's own.
+    pub bounds: Option<BoundsSpec>,
+}
+
+/// What fills the bounds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MediumKind {
+    /// The same extinction everywhere.
+    Homogeneous {
+        /// \[1/length\]
+        sigma_t: f64,
+    },
+    /// szirmay-kalos-2017 eq. 21.
+    AnalyticCosine {
+        /// A factor in front of it.
+        scale: f64,
+    },
+    /// Perlin noise of several octaves.
+    Perlin(PerlinParameters),
+    /// A formula in x, y, z.
+    Expression {
+        /// The formula.
+        sigma_t: String,
+        /// A fact about the field.
+        majorant: Option<f64>,
+    },
+    /// An OpenVDB fog volume.
+    Vdb {
+        /// The file.
+        file: PathBuf,
+        /// The grid; without it, the first float grid.
+        grid: Option<String>,
+        /// A factor in front of the voxel values.
+        scale: f64,
+    },
+}
+
+/// Where a medium is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BoundsSpec {
+    /// A ball.
+    Sphere {
+        /// Its center.
+        center: DVec3,
+        /// Its radius.
+        radius: f64,
+    },
+    /// An axis-aligned box.
+    Box {
+        /// Its lower corner.
+        min: DVec3,
+        /// Its upper corner.
+        max: DVec3,
+    },
+}
+
+impl MediumSpec {
+    /// Reads `medium`.
+    ///
+    /// # Errors
+    /// If a key is missing, unknown or of the wrong kind.
+    pub fn read(node: &Node<'_>) -> Result<Self, Failure> {
+        let object = node.object()?;
+        let kind = MediumKind::read(&object)?;
+        let bounds = object.optional("bounds").map(|node| BoundsSpec::read(&node)).transpose()?;
+        let has_own = matches!(kind, MediumKind::AnalyticCosine { .. } | MediumKind::Vdb { .. });
+        if bounds.is_none() && !has_own {
+            // Names the missing key.
+            object.required("bounds")?;
+        }
+        object.finish()?;
+        Ok(Self { kind, bounds })
+    }
+}
+
+impl MediumKind {
+    fn read(object: &Object<'_>) -> Result<Self, Failure> {
+        let kind = object.required("kind")?;
+        Ok(match kind.text()? {
+            "homogeneous" => Self::Homogeneous { sigma_t: object.required("sigma_t")?.number()? },
+            "analytic_cosine" => Self::AnalyticCosine { scale: number_or(object, "scale", 1.0)? },
+            "perlin" => Self::Perlin(read_perlin(object)?),
+            "expression" => Self::Expression {
+                sigma_t: object.required("sigma_t")?.text()?.to_owned(),
+                majorant: object.optional("majorant").map(|node| node.non_negative()).transpose()?,
+            },
+            "vdb" => Self::Vdb {
+                file: PathBuf::from(object.required("file")?.text()?),
+                grid: object.optional("grid").map(|node| node.text().map(str::to_owned)).transpose()?,
+                scale: number_or(object, "scale", 1.0)?,
+            },
+            _ => {
+                return Err(kind.refuse("must be homogeneous, analytic_cosine, perlin, expression or vdb"));
+            }
+        })
+    }
+}
+
+fn number_or(object: &Object<'_>, key: &'static str, default: f64) -> Result<f64, Failure> {
+    object.optional(key).map_or(Ok(default), |node| node.number())
+}
+
+fn read_perlin(object: &Object<'_>) -> Result<PerlinParameters, Failure> {
+    let default = PerlinParameters::default();
+    let integer = |key, least, most, otherwise: u32| {
+        object.optional(key).map_or(Ok(otherwise), |node| node.integer(least, most).map(|n| n as u32))
+    };
+    Ok(PerlinParameters {
+        octaves: integer("octaves", 1, 32, default.octaves)?,
+        frequency: number_or(object, "frequency", default.frequency)?,
+        lacunarity: number_or(object, "lacunarity", default.lacunarity)?,
+        gain: number_or(object, "gain", default.gain)?,
+        seed: integer("seed", 0, u64::from(u32::MAX), default.seed)?,
+        scale: number_or(object, "scale", default.scale)?,
+        offset: number_or(object, "offset", default.offset)?,
+    })
+}
+
+impl BoundsSpec {
+    fn read(node: &Node<'_>) -> Result<Self, Failure> {
+        let object = node.object()?;
+        let bounds = match (object.optional("sphere"), object.optional("box")) {
+            (Some(sphere), None) => {
+                let object = sphere.object()?;
+                let bounds = Self::Sphere {
+                    center: object.required("center")?.vector()?,
+                    radius: object.required("radius")?.non_negative()?,
+                };
+                object.finish()?;
+                bounds
+            }
+            (None, Some(cuboid)) => {
+                let object = cuboid.object()?;
+                let (min, max) = (object.required("min")?, object.required("max")?);
+                let bounds = Self::Box { min: min.vector()?, max: max.vector()? };
+                if let Self::Box { min: low, max: high } = bounds
+                    && !low.cmple(high).all()
+                {
+                    return Err(max.refuse("must not be below min in any coordinate"));
+                }
+                object.finish()?;
+                bounds
+            }
+            _ => return Err(node.refuse("must hold either sphere or box")),
+        };
+        object.finish()?;
+        Ok(bounds)
+    }
+}

@@ -1,0 +1,16 @@
+//! What is to be measured, as data: the experiment of `harness estimate`, and the points of every report.
+//!
+//! A spec is what was asked for, checked in itself (types, signs, lengths of lists). Whether it fits together (a
+//! majorant that is one, edges that cover the ray) is for the plan to find.
+
+mod estimator;
+mod experiment;
+mod medium;
+mod node;
+mod profile;
+
+pub use estimator::{ControlSpec, EstimatorSpec, SamplingSpec};
+pub use experiment::{Experiment, Overrides, Request, Sweep};
+pub use medium::{BoundsSpec, MediumKind, MediumSpec};
+pub use node::Node;
+pub use profile::ProfileSpec;
