@@ -7,8 +7,9 @@ use crate::plan::{
 };
 use crate::reference::{Prediction, Truth, explain, predict};
 use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, ReferenceResult};
+use fairflight_laws::Unit;
 use fairflight_media::{Tolerance, Violation};
-use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, Scores, judge};
+use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, judge};
 
 /// Runs a plan.
 ///
@@ -64,9 +65,6 @@ impl EstimatorJob for Draw<'_> {
     }
 }
 
-/// Below this, 1/T overflows or T has lost digits: such a transmittance is judged as it stands.
-const LEAST_UNIT: f64 = 1e-300;
-
 /// Puts what was measured beside what is known.
 #[must_use]
 pub fn analyse(
@@ -81,19 +79,18 @@ pub fn analyse(
     let transmittance = truth.transmittance();
     let theory = &prediction.theory;
 
-    // In units of T, so that the powers of a small transmittance do not underflow.
-    let unit = if transmittance > LEAST_UNIT { transmittance } else { 1.0 };
-    let closed = closed_moments(prediction, transmittance / unit, unit == transmittance);
+    let unit = Unit::of(truth.optical_thickness);
+    let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
     let reference = Reference {
-        mean: transmittance / unit,
-        error: truth.error() / unit,
+        mean: closed.mean,
+        error: truth.error() * unit.scale(),
         moments: Some(closed),
-        scores: scores(&plan.estimator, prediction, truth, unit),
+        scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
     };
-    let verdict = judge(&moments.scaled(1.0 / unit), &reference, DEFAULT_ALPHA);
+    let verdict = judge(&moments.scaled(unit.scale()), &reference, DEFAULT_ALPHA);
 
     let known = closed.variance.is_some();
-    let scale = |value: f64, power: i32| value * unit.powi(power);
+    let scale = |value: f64, power: i32| value / unit.scale().powi(power);
     let mean_error = closed.standard_error(n).map(|e| scale(e, 1)).or_else(|| moments.standard_error());
     let variance_error =
         closed.variance_standard_error(n).map(|e| scale(e, 2)).or_else(|| moments.variance_standard_error());
@@ -131,21 +128,13 @@ pub fn analyse(
     }
 }
 
-/// The closed moments in the unit of the verdict.
-fn closed_moments(prediction: &Prediction, mean: f64, relative: bool) -> ClosedMoments {
-    let theory = &prediction.theory;
-    // Where T itself underflows, T^2 and higher do: the moments are zero, not unknown.
-    let central: Vec<Option<f64>> = theory
-        .relative_central
-        .iter()
-        .map(|&moment| if relative || moment == 0.0 { Some(moment) } else { None })
-        .map(|moment| moment.filter(|moment| !moment.is_nan()))
-        .collect();
+/// The closed moments in the unit of the verdict: as they are where that is T itself; where T is no number to divide by,
+/// only moments of zero are known in it.
+fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
+    let in_units_of_t = mean == 1.0;
+    let central =
+        prediction.theory.relative_central.map(|moment| (in_units_of_t || moment == 0.0).then_some(moment));
     ClosedMoments::from_central(mean, &central)
-}
-
-fn scores(_estimator: &AnyEstimator, _prediction: &Prediction, _truth: &Truth, _unit: f64) -> Scores {
-    Scores::Unbounded
 }
 
 /// How the reference is known, in words.

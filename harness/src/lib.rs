@@ -10,6 +10,8 @@ mod cli;
 mod environment;
 mod estimate;
 mod failure;
+mod list;
+mod verify;
 
 pub mod experiment;
 pub mod measure;
@@ -45,6 +47,8 @@ pub fn run(
     let environment = Environment::new(&arguments, terminal);
     let outcome = match cli.command {
         Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
+        Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
+        Some(Command::List) => list::run(stdout),
         _ => Ok(DONE),
     };
     match outcome {

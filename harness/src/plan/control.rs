@@ -4,6 +4,7 @@ use super::sampling::clipped_nodes;
 use super::{AnyProfile, Field, FieldJob, KnownField};
 use crate::Failure;
 use crate::spec::ControlSpec;
+use fairflight_laws::scores::{Interval, Ranged};
 use fairflight_media::{Breakpoints, Constant, Extinction, OpticalThickness, PiecewiseLinear, Vacuum};
 use fairflight_transmittance::{Explorers, TooFewExplorers};
 
@@ -118,6 +119,17 @@ impl Breakpoints for AnyControl {
             Self::Constant(control) => control.breakpoints(),
             Self::PiecewiseLinear(control) => control.breakpoints(),
             Self::Explorers(control) => control.breakpoints(),
+        }
+    }
+}
+
+impl Ranged for AnyControl {
+    fn range(&self) -> Interval {
+        match self {
+            Self::None(control) => control.range(),
+            Self::Constant(control) => control.range(),
+            Self::PiecewiseLinear(control) => control.range(),
+            Self::Explorers(control) => control.range(),
         }
     }
 }

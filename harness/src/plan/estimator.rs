@@ -1,10 +1,13 @@
 //! An estimator of any kind, instantiated over the field that it meets.
 
-use super::{AnyControl, AnyProfile, AnySampling, Field};
+use super::{AnyControl, AnyProfile, AnySampling, Field, Knowledge};
 use crate::Failure;
 use crate::spec::EstimatorSpec;
-use fairflight_collision::{DoubleParticle, SingleParticle};
-use fairflight_media::{Bounded, Breakpoints, Counted, Domain, Watched};
+use fairflight_collision::{CollisionModel, DoubleParticle, SingleParticle};
+use fairflight_laws::Unit;
+use fairflight_laws::scores::{self, Interval, Ranged};
+use fairflight_media::{Bounded, Breakpoints, Counted, Domain, OpticalThickness, Watched};
+use fairflight_stats::Scores;
 use fairflight_transmittance::{
     ClosedForm, LineIntegral, RayMarching, Tracking, TransmittanceEstimator, Woodcock,
 };
@@ -129,6 +132,23 @@ impl AnyEstimator {
         })
     }
 
+    /// Which values an estimate can take, by what is known of the profile.
+    #[must_use]
+    pub fn scores(&self, profile: &AnyProfile, knowledge: &Knowledge, unit: Unit) -> Scores {
+        let sigma_t = Interval {
+            minimum: knowledge.lower_bound.unwrap_or(f64::NEG_INFINITY),
+            maximum: knowledge.upper_bound.unwrap_or(f64::INFINITY),
+        };
+        let length = profile.length();
+        match self {
+            Self::Woodcock { .. } => scores::woodcock(unit),
+            Self::DoubleParticle(tracking) => scores_of(tracking, sigma_t, length, unit),
+            Self::SingleParticle(tracking) => scores_of(tracking, sigma_t, length, unit),
+            Self::LineIntegral { majorant, .. } => scores::line_integral(majorant * length, unit),
+            Self::RayMarching(_) => scores::ray_marching(sigma_t, length, unit),
+        }
+    }
+
     /// Look-ups of the profile that preparing it cost.
     #[must_use]
     pub fn preparation_lookups(&self) -> u64 {
@@ -162,4 +182,15 @@ impl AnyEstimator {
             Self::DoubleParticle(_) | Self::SingleParticle(_) | Self::RayMarching(_) => None,
         }
     }
+}
+
+fn scores_of<M: CollisionModel>(
+    tracking: &Tracking<M, AnyControl, AnySampling>,
+    sigma_t: Interval,
+    length: f64,
+    unit: Unit,
+) -> Scores {
+    let ratios = scores::ratio_range(sigma_t, tracking.control().range(), tracking.sampling().range());
+    let main_thickness = tracking.control().optical_thickness(0.0, length);
+    scores::tracking(tracking.model(), ratios, main_thickness, unit)
 }

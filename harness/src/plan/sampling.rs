@@ -3,6 +3,7 @@
 use super::AnyProfile;
 use crate::Failure;
 use crate::spec::SamplingSpec;
+use fairflight_laws::scores::{Interval, Ranged};
 use fairflight_media::{
     Breakpoints, Constant, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
 };
@@ -125,6 +126,15 @@ impl Breakpoints for AnySampling {
         match self {
             Self::Constant(sampling) => sampling.breakpoints(),
             Self::PiecewiseConstant(sampling) => sampling.breakpoints(),
+        }
+    }
+}
+
+impl Ranged for AnySampling {
+    fn range(&self) -> Interval {
+        match self {
+            Self::Constant(sampling) => sampling.range(),
+            Self::PiecewiseConstant(sampling) => sampling.range(),
         }
     }
 }

@@ -1,0 +1,38 @@
+//! `harness list`: what there is to choose from.
+
+use crate::{DONE, Failure};
+use std::io::Write;
+
+const LIST: &str = "\
+reports        standard
+profiles       constant          sigma_t, length
+               piecewise_constant edges, sigma_t
+               piecewise_linear  positions, sigma_t
+               expression        sigma_t (in s), length, [majorant]
+               ray               medium, origin, direction, [length]
+media          homogeneous       sigma_t, bounds
+               analytic_cosine   [scale], [bounds]          szirmay-kalos-2017 eq. 21
+               perlin            [octaves], [frequency], [lacunarity], [gain], [seed], [scale], [offset], bounds
+               expression        sigma_t (in x, y, z), [majorant], bounds
+               vdb               file, [grid], [scale], [bounds]
+bounds         sphere            center, radius
+               box               min, max
+estimators     woodcock          majorant                   raab-2008 algorithm 1
+               double_particle   sigma_samp, [control]      szirmay-kalos-2017 4.2: ratio and residual ratio tracking
+               single_particle   version, albedo, sigma_samp, [control]
+               line_integral     majorant, splits           raab-2008 algorithm 2
+               ray_marching      steps, jitter              a biased baseline
+versions       terminating, non_terminating, adaptive
+sigma_samp     a number, or an object of edges and values
+controls       none
+               constant          sigma_main
+               piecewise_linear  positions, sigma_main
+               explorers         count
+";
+
+pub(crate) fn run(stdout: &mut dyn Write) -> Result<i32, Failure> {
+    stdout
+        .write_all(LIST.as_bytes())
+        .map_err(|error| Failure::NotWritten(format!("cannot write the list: {error}")))?;
+    Ok(DONE)
+}
