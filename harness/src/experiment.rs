@@ -10,6 +10,7 @@ use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, Re
 use fairflight_laws::Unit;
 use fairflight_media::{Tolerance, Violation};
 use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, judge};
+use fairflight_transmittance::Theory;
 
 /// Runs a plan.
 ///
@@ -89,7 +90,7 @@ pub fn analyse(
     };
     let verdict = judge(&moments.scaled(unit.scale()), &reference, DEFAULT_ALPHA);
 
-    let known = closed.variance.is_some();
+    let known = variance_is_known(theory);
     let scale = |value: f64, power: i32| value / unit.scale().powi(power);
     let mean_error = closed.standard_error(n).map(|e| scale(e, 1)).or_else(|| moments.standard_error());
     let variance_error =
@@ -128,9 +129,21 @@ pub fn analyse(
     }
 }
 
+/// Beyond this relative error an integral of the variance has not converged: it may well be infinite.
+const DIVERGENCE: f64 = 1e-2;
+
+fn variance_is_known(theory: &Theory) -> bool {
+    // The relative error of a variance of zero is 0/0: no divergence.
+    let error = theory.relative_variance_error;
+    !theory.log_relative_variance.is_nan() && (error.is_nan() || error <= DIVERGENCE)
+}
+
 /// The closed moments in the unit of the verdict: as they are where that is T itself; where T is no number to divide by,
 /// only moments of zero are known in it.
 fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
+    if !variance_is_known(&prediction.theory) {
+        return ClosedMoments::with_mean(mean);
+    }
     let in_units_of_t = mean == 1.0;
     let central =
         prediction.theory.relative_central.map(|moment| (in_units_of_t || moment == 0.0).then_some(moment));
@@ -158,8 +171,10 @@ fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> S
     if truth.transmittance() == 0.0 {
         method.push_str("; the transmittance underflows to 0 in double precision");
     }
-    if prediction.theory.relative_variance_error > 1e-3 {
-        method.push_str("; the quadrature of the variance did not converge");
+    if prediction.theory.relative_variance_error > DIVERGENCE {
+        method.push_str(
+            "; the integral of sigma_diff^2/sigma_samp does not converge: the variance may be infinite",
+        );
     }
     method
 }

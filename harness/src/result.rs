@@ -130,7 +130,6 @@ pub struct Provenance {
 }
 
 /// JSON has no infinity: it is written as a word, and null means that a quantity does not exist.
-#[expect(clippy::ref_option, reason = "the signature that serde calls")]
 pub fn number<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     match value {
         Some(x) if x.is_infinite() => {

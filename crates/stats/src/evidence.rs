@@ -1,6 +1,6 @@
 //! From a p-value and a power to a judgement of the mean.
 
-use crate::judge::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome};
+use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome};
 use crate::reference::Reference;
 use crate::verdict::MeanTest;
 
@@ -38,7 +38,7 @@ impl Evidence<'_> {
             None => test == MeanTest::Normal,
         };
         let outcome = if rejected { Some(false) } else { powerful.then_some(true) };
-        let p_text = p.map_or("unknown".to_owned(), |p| format!("{p:.3e}"));
+        let p_text = p.map_or("unknown".to_owned(), p_value_text);
         let power_text = detectable
             .map_or("the reference is zero and no relative bias is defined".to_owned(), |detectable| {
                 format!("a relative bias shows from {detectable:.2e} on")
@@ -62,4 +62,9 @@ impl Evidence<'_> {
 /// A deviation in units of the reference; `None` for a reference of zero.
 pub(crate) fn relative(deviation: f64, reference: &Reference) -> Option<f64> {
     (reference.mean != 0.0).then(|| deviation / reference.mean.abs())
+}
+
+/// A p-value for people: decimals where they tell it, a power of ten where they do not.
+pub(crate) fn p_value_text(p: f64) -> String {
+    if p >= 0.001 { format!("{p:.3}") } else { format!("{p:.1e}") }
 }

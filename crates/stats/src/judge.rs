@@ -4,7 +4,7 @@
 //! dependent). Two-valued samples have one test only, the exact binomial one, which gets all of alpha.
 //!
 //! A rejection stands wherever the level of a test holds, however weak the test. An acceptance needs power as well: a
-//! test that would have missed a relative bias of [`MAX_DETECTABLE_RELATIVE_BIAS`] accepts nothing, it is not testable.
+//! test that would have missed a relative bias of [`MAX_DETECTABLE_RELATIVE_BIAS`](crate::MAX_DETECTABLE_RELATIVE_BIAS) accepts nothing, it is not testable.
 //! `sound` follows the mean; a variance without a test is named in the reason, one that differs makes the call unsound.
 
 use crate::mean_test::judge_mean;
@@ -13,26 +13,11 @@ use crate::reference::{Reference, Scores};
 use crate::variance_test::judge_variance;
 use crate::verdict::{MeanTest, StandardErrorSource, Verdict};
 
-/// False alarm of one call that reports promise.
-pub const DEFAULT_ALPHA: f64 = 1e-6;
-
-/// Power at which the detectable bias is stated.
-pub const POWER: f64 = 0.99;
-
-/// Greatest detectable relative bias at which agreement still says something.
-///
-/// An error in an estimator's formula (a factor forgotten, a probability inverted) rarely moves the mean by less than
-/// half; a run that could not even see half of the mean gone is no evidence.
-pub const MAX_DETECTABLE_RELATIVE_BIAS: f64 = 0.5;
-
 /// Relative tolerance for a sample to be one of its two values, or within its bounds: rounding of long products.
 const SCORE_TOLERANCE: f64 = 1e-9;
 
 /// Relative rounding error of a streamed mean, with room: 1e4 roundings of 1e-16.
 const MEAN_ROUNDING: f64 = 1e-12;
-
-/// What a test says: `Some(true)` = agrees, `Some(false)` = differs, `None` = not testable.
-pub(crate) type Outcome = Option<bool>;
 
 /// Judges measured moments against a reference, with a false alarm of at most `alpha` for the whole call.
 ///
@@ -65,6 +50,7 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
         mean_test: MeanTest::NotTestable,
     };
     let Some(mean) = measured.mean() else { return verdict };
+    let reference = &without_degenerate_scores(*reference);
     if reference.mean.is_nan() || reference.error.is_nan() || reference.error < 0.0 {
         verdict.reason = "not testable: the reference or its error is not a number".to_owned();
         return verdict;
@@ -104,6 +90,16 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
     }
     verdict.reason = format!("mean {}; variance {}", mean_judgement.reason, variance_judgement.reason);
     verdict
+}
+
+/// Two values that are one (a control's transmittance that underflows) leave nothing to count: a constant.
+fn without_degenerate_scores(reference: Reference) -> Reference {
+    match reference.scores {
+        Scores::TwoValued { high: 0.0 } => {
+            Reference { scores: Scores::Bounded { minimum: 0.0, maximum: 0.0 }, ..reference }
+        }
+        _ => reference,
+    }
 }
 
 /// What in the sample contradicts the facts of the reference, independently of any statistics.

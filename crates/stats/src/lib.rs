@@ -10,6 +10,7 @@ mod evidence;
 mod judge;
 mod mean_test;
 mod normal_test;
+mod policy;
 mod variance_test;
 
 pub mod approximation;
@@ -29,8 +30,9 @@ pub use binomial::{Binomial, BinomialError};
 pub use binomial_inference::{clopper_pearson, trials_needed};
 pub use closed_moments::ClosedMoments;
 pub use family::{holm_rejections, sidak_level};
-pub use judge::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER, judge};
+pub use judge::judge;
 pub use moments::Moments;
+pub use policy::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER};
 pub use reference::{Reference, Scores};
 pub use verdict::{MeanTest, StandardErrorSource, Verdict};
 

@@ -4,9 +4,9 @@ use crate::bernstein::Bernstein;
 use crate::binomial::Binomial;
 use crate::binomial_inference::trials_needed;
 use crate::evidence::{Evidence, MeanJudgement, relative};
-use crate::judge::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome, POWER};
 use crate::moments::Moments;
 use crate::normal_test::normal;
+use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome, POWER};
 use crate::reference::{Reference, Scores};
 use crate::verdict::MeanTest;
 

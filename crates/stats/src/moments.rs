@@ -117,6 +117,23 @@ impl Moments {
         }
     }
 
+    /// The moments of the same values in another unit: each multiplied by `factor` > 0.
+    ///
+    /// The factor enters one power at a time, so that a moment under- or overflows only where the scaled one does.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let times = |moment: f64, power: u32| (0..power).fold(moment, |moment, _| moment * factor);
+        Self {
+            count: self.count,
+            mean: times(self.mean, 1),
+            m2: times(self.m2, 2),
+            m3: times(self.m3, 3),
+            m4: times(self.m4, 4),
+            minimum: times(self.minimum, 1),
+            maximum: times(self.maximum, 1),
+        }
+    }
+
     /// Adds all values behind `other`, as if they had been pushed after those of `self`.
     ///
     /// The result depends on the order of merges in its last bits, on nothing else. Merging with the moments of no

@@ -2,9 +2,9 @@
 
 use crate::approximation::NormalApproximation;
 use crate::evidence::{Evidence, MeanJudgement, relative};
-use crate::judge::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
 use crate::moments::Moments;
 use crate::normal::upper_quantile;
+use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
 use crate::reference::Reference;
 use crate::verdict::MeanTest;
 

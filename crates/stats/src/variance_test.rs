@@ -5,8 +5,9 @@
 //! passes its own test, and is granted.
 
 use crate::approximation::NormalApproximation;
-use crate::judge::Outcome;
+use crate::evidence::p_value_text;
 use crate::moments::Moments;
+use crate::policy::Outcome;
 use crate::reference::{Reference, Scores};
 
 /// What the test of the variance says.
@@ -74,7 +75,7 @@ pub(crate) fn judge_variance(
         outcome: Some(agrees),
         z,
         p: Some(p),
-        reason: format!("{verb} its closed form: p = {p:.3e}, level {level:.1e}"),
+        reason: format!("{verb} its closed form: p = {}, level {level:.1e}", p_value_text(p)),
     }
 }
 

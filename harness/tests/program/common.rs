@@ -5,14 +5,14 @@ use serde_json::Value;
 
 /// What a run of the program left behind.
 #[derive(Debug)]
-pub struct Outcome {
-    pub code: i32,
-    pub stdout: String,
-    pub stderr: String,
+pub(crate) struct Outcome {
+    pub(crate) code: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
 /// Runs `harness ARGUMENTS` with this standard input.
-pub fn harness(arguments: &[&str], stdin: &str) -> Outcome {
+pub(crate) fn harness(arguments: &[&str], stdin: &str) -> Outcome {
     let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
     let words = std::iter::once(&"harness").chain(arguments).copied();
     let code = run(words, &mut stdin.as_bytes(), &mut stdout, &mut stderr, Terminal::default());
@@ -21,15 +21,13 @@ pub fn harness(arguments: &[&str], stdin: &str) -> Outcome {
 }
 
 /// Runs `harness estimate -` on a spec, and reads the result.
-#[allow(dead_code, reason = "each test binary uses what it needs")]
-pub fn estimate(spec: &str) -> Value {
+pub(crate) fn estimate(spec: &str) -> Value {
     let outcome = harness(&["estimate", "-"], spec);
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
     serde_json::from_str(&outcome.stdout).expect("the result is JSON")
 }
 
 /// The path of a fixture.
-#[allow(dead_code, reason = "each test binary uses what it needs")]
-pub fn fixture(name: &str) -> String {
+pub(crate) fn fixture(name: &str) -> String {
     format!("{}/../tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
 }

@@ -1,12 +1,13 @@
 //! `estimate`: results against closed forms, the meaning of the spec, and the same bits on any number of threads.
 
-mod common;
-
-use common::{estimate, fixture, harness};
+use crate::common::{estimate, fixture, harness};
 use serde_json::Value;
 
 fn number(value: &Value, pointer: &str) -> f64 {
-    value.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {pointer} in {value}"))
+    value
+        .pointer(pointer)
+        .and_then(Value::as_f64)
+        .unwrap_or_else(|| panic!("no number at {pointer} in {value}"))
 }
 
 fn spec(profile: &str, estimator: &str, samples: u64) -> String {
@@ -24,7 +25,8 @@ fn the_example_of_the_documentation_is_sound() {
     );
     assert_eq!(result["verdict"]["sound"], true);
     // By the primitive of exp(-0.2 s) sin(7 s).
-    let primitive = |s: f64| (-0.2 * s).exp() * (-0.2 * (7.0 * s).sin() - 7.0 * (7.0 * s).cos()) / (0.04 + 49.0);
+    let primitive =
+        |s: f64| (-0.2 * s).exp() * (-0.2 * (7.0 * s).sin() - 7.0 * (7.0 * s).cos()) / (0.04 + 49.0);
     let thickness = 2.7 + 0.25 * (primitive(9.0) - primitive(0.0));
     assert!((number(&result, "/reference/optical_thickness") - thickness).abs() < 1e-12);
     assert!((number(&result, "/reference/lookups_per_sample") - 0.35 * 9.0).abs() < 1e-12);
@@ -63,7 +65,10 @@ fn every_estimator_answers_on_a_ray() {
 
 #[test]
 fn a_biased_baseline_is_measured_and_not_punished() {
-    let outcome = harness(&["estimate", "-"], &spec(SEED_RAY, r#"{ "kind": "ray_marching", "steps": 8, "jitter": true }"#, 20_000));
+    let outcome = harness(
+        &["estimate", "-"],
+        &spec(SEED_RAY, r#"{ "kind": "ray_marching", "steps": 8, "jitter": true }"#, 20_000),
+    );
     let result: Value = serde_json::from_str(&outcome.stdout).unwrap();
     assert_eq!((outcome.code, &result["verdict"]["sound"]), (0, &Value::Bool(false)));
 }
@@ -73,7 +78,13 @@ fn zero_variance_has_no_z_scores_and_no_efficiency() {
     let profile = r#"{ "kind": "constant", "sigma_t": 0.5, "length": 4 }"#;
     let estimator = r#"{ "kind": "double_particle", "sigma_samp": 1, "control": { "kind": "constant", "sigma_main": 0.5 } }"#;
     let result = estimate(&spec(profile, estimator, 1000));
-    for pointer in ["/verdict/mean_z", "/verdict/variance_z", "/reference/log_variance", "/efficiency/per_lookup", "/efficiency/per_second"] {
+    for pointer in [
+        "/verdict/mean_z",
+        "/verdict/variance_z",
+        "/reference/log_variance",
+        "/efficiency/per_lookup",
+        "/efficiency/per_second",
+    ] {
         assert_eq!(result.pointer(pointer), Some(&Value::Null), "{pointer}");
     }
     assert_eq!(result["verdict"]["sound"], true);
@@ -168,7 +179,10 @@ fn overrides_replace_the_spec() {
     let spec = spec(SEED_RAY, r#"{ "kind": "woodcock", "majorant": 1 }"#, 10);
     let outcome = harness(&["estimate", "-", "--samples", "500", "--seed", "9"], &spec);
     let result: Value = serde_json::from_str(&outcome.stdout).unwrap();
-    assert_eq!((&result["cost"]["samples"], &result["provenance"]["seed"]), (&Value::from(500), &Value::from(9)));
+    assert_eq!(
+        (&result["cost"]["samples"], &result["provenance"]["seed"]),
+        (&Value::from(500), &Value::from(9))
+    );
 }
 
 #[test]

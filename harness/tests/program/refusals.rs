@@ -1,8 +1,6 @@
 //! Bad input: exit code 2, one line on standard error that names the key, nothing on standard output.
 
-mod common;
-
-use common::{fixture, harness};
+use crate::common::{fixture, harness};
 
 const PROFILE: &str = r#"{ "kind": "constant", "sigma_t": 1.0, "length": 2.0 }"#;
 const ESTIMATOR: &str = r#"{ "kind": "double_particle", "sigma_samp": 1.0 }"#;
@@ -44,7 +42,10 @@ fn what_is_not_a_spec() {
     refused(&spec(PROFILE, ESTIMATOR).replace("100", "1.5"), &["samples", "found 1.5"]);
     refused(&spec(PROFILE, ESTIMATOR).replace(r#""seed": 1"#, r#""seed": -1"#), &["seed"]);
     refused(&spec(PROFILE, ESTIMATOR).replace(r#""seed": 1"#, r#""sede": 1"#), &["seed", "missing"]);
-    refused(&spec(PROFILE, ESTIMATOR).replace(r#""seed": 1"#, r#""seed": 1, "extra": 2"#), &["extra", "unknown key"]);
+    refused(
+        &spec(PROFILE, ESTIMATOR).replace(r#""seed": 1"#, r#""seed": 1, "extra": 2"#),
+        &["extra", "unknown key"],
+    );
     refused(r#"{ "samples": NaN }"#, &["not JSON"]);
     refused(&spec(PROFILE, ESTIMATOR).replace("1.0", "1e999"), &["number out of range"]);
 }
@@ -60,8 +61,14 @@ fn a_file_that_cannot_be_read_is_named() {
 fn profiles() {
     profile_refused(r#"{ "kind": "conical" }"#, &["profile.kind", "must be constant", "conical"]);
     profile_refused(r#"{ "kind": "constant", "sigma_t": 1.0 }"#, &["profile.length", "missing"]);
-    profile_refused(r#"{ "kind": "constant", "sigma_t": "a", "length": 1 }"#, &["profile.sigma_t", "finite number"]);
-    profile_refused(r#"{ "kind": "constant", "sigma_t": 1, "length": -1 }"#, &["profile.length", "at least 0"]);
+    profile_refused(
+        r#"{ "kind": "constant", "sigma_t": "a", "length": 1 }"#,
+        &["profile.sigma_t", "finite number"],
+    );
+    profile_refused(
+        r#"{ "kind": "constant", "sigma_t": 1, "length": -1 }"#,
+        &["profile.length", "at least 0"],
+    );
     profile_refused(
         r#"{ "kind": "constant", "sigma_t": 1, "length": 1, "colour": 3 }"#,
         &["profile.colour", "unknown key", "sigma_t, length"],
@@ -89,17 +96,25 @@ fn expressions() {
     profile_refused(&formula("", ""), &["profile.sigma_t"]);
     profile_refused(&formula("ln(s - 1)", ""), &["profile", "NaN", "s = 0"]);
     profile_refused(&formula("1/0", ""), &["profile", "inf"]);
-    profile_refused(&formula("1 + s", r#", "majorant": 2"#), &["profile", "exceeds the declared majorant 2", "s = "]);
+    profile_refused(
+        &formula("1 + s", r#", "majorant": 2"#),
+        &["profile", "exceeds the declared majorant 2", "s = "],
+    );
     profile_refused(&formula("1 + s", r#", "majorant": -2"#), &["profile.majorant", "at least 0"]);
 }
 
 #[test]
 fn rays_and_media() {
     let ray = |medium: &str, more: &str| {
-        format!(r#"{{ "kind": "ray", "medium": {medium}, "origin": [0, 0, 0], "direction": [0, 0, 1]{more} }}"#)
+        format!(
+            r#"{{ "kind": "ray", "medium": {medium}, "origin": [0, 0, 0], "direction": [0, 0, 1]{more} }}"#
+        )
     };
     profile_refused(&ray(r#"{ "kind": "fog" }"#, ""), &["profile.medium.kind", "must be homogeneous"]);
-    profile_refused(&ray(r#"{ "kind": "homogeneous", "sigma_t": 1 }"#, ""), &["profile.medium.bounds", "missing"]);
+    profile_refused(
+        &ray(r#"{ "kind": "homogeneous", "sigma_t": 1 }"#, ""),
+        &["profile.medium.bounds", "missing"],
+    );
     let ball = |bounds: &str| format!(r#"{{ "kind": "homogeneous", "sigma_t": 1, "bounds": {bounds} }}"#);
     profile_refused(
         &ray(&ball(r#"{ "sphere": { "center": [0, 0], "radius": 1 } }"#), ""),
@@ -122,7 +137,8 @@ fn rays_and_media() {
         &ray(r#"{ "kind": "analytic_cosine" }"#, "").replace("[0, 0, 1]", "[0, 0, 0]"),
         &["profile.direction", "must not be zero"],
     );
-    let noise = r#"{ "kind": "perlin", "octaves": 0, "bounds": { "sphere": { "center": [0,0,0], "radius": 1 } } }"#;
+    let noise =
+        r#"{ "kind": "perlin", "octaves": 0, "bounds": { "sphere": { "center": [0,0,0], "radius": 1 } } }"#;
     profile_refused(&ray(noise, ""), &["profile.medium.octaves", "from 1 to 32"]);
 }
 
@@ -136,7 +152,10 @@ fn volumes() {
     profile_refused(&ray("no/such.vdb", ""), &["profile.medium.file", "no/such.vdb"]);
     profile_refused(&ray(&fixture("README.md"), ""), &["profile.medium.file", "OpenVDB"]);
     profile_refused(&ray(&fixture("truncated.vdb"), ""), &["profile.medium.file", "cut off"]);
-    profile_refused(&ray(&fixture("vec_only.vdb"), ""), &["profile.medium.file", "no float grid", "Tree_vec3s"]);
+    profile_refused(
+        &ray(&fixture("vec_only.vdb"), ""),
+        &["profile.medium.file", "no float grid", "Tree_vec3s"],
+    );
     profile_refused(
         &ray(&fixture("cloud.vdb"), r#", "grid": "smoke""#),
         &["profile.medium.file", "smoke", "density", "temperature"],
@@ -147,14 +166,23 @@ fn volumes() {
 fn estimators() {
     estimator_refused(r#"{ "kind": "magic" }"#, &["estimator.kind", "must be woodcock"]);
     estimator_refused(r#"{ "kind": "woodcock", "majorant": -1 }"#, &["estimator.majorant", "at least 0"]);
-    estimator_refused(r#"{ "kind": "woodcock", "majorant": 0.5 }"#, &["estimator.majorant", "0.5 is none", "reaches 1"]);
+    estimator_refused(
+        r#"{ "kind": "woodcock", "majorant": 0.5 }"#,
+        &["estimator.majorant", "0.5 is none", "reaches 1"],
+    );
     estimator_refused(
         r#"{ "kind": "line_integral", "majorant": 1, "splits": 0 }"#,
         &["estimator.splits", "from 1", "found 0"],
     );
     estimator_refused(r#"{ "kind": "ray_marching", "steps": 8 }"#, &["estimator.jitter", "missing"]);
-    estimator_refused(r#"{ "kind": "ray_marching", "steps": 8, "jitter": 1 }"#, &["estimator.jitter", "true or false"]);
-    estimator_refused(r#"{ "kind": "double_particle", "sigma_samp": -1 }"#, &["estimator.sigma_samp", "at least 0"]);
+    estimator_refused(
+        r#"{ "kind": "ray_marching", "steps": 8, "jitter": 1 }"#,
+        &["estimator.jitter", "true or false"],
+    );
+    estimator_refused(
+        r#"{ "kind": "double_particle", "sigma_samp": -1 }"#,
+        &["estimator.sigma_samp", "at least 0"],
+    );
     estimator_refused(
         r#"{ "kind": "double_particle", "sigma_samp": 0 }"#,
         &["estimator.sigma_samp", "silent bias", "s = "],
@@ -188,24 +216,34 @@ fn estimators() {
 #[test]
 fn a_field_below_zero_is_no_field_for_woodcock() {
     let negative = r#"{ "kind": "constant", "sigma_t": -0.5, "length": 2 }"#;
-    refused(&spec(negative, r#"{ "kind": "woodcock", "majorant": 1 }"#), &["estimator.majorant", "at least 0"]);
-    let terminating = r#"{ "kind": "single_particle", "version": "terminating", "albedo": 0.5, "sigma_samp": 1 }"#;
+    refused(
+        &spec(negative, r#"{ "kind": "woodcock", "majorant": 1 }"#),
+        &["estimator.majorant", "at least 0"],
+    );
+    let terminating =
+        r#"{ "kind": "single_particle", "version": "terminating", "albedo": 0.5, "sigma_samp": 1 }"#;
     refused(&spec(negative, terminating), &["estimator.version", "r = "]);
 }
 
 #[test]
 fn a_majorant_that_only_a_look_up_refutes() {
     // The peak is too narrow for the nodes of the quadrature of a field without breakpoints to be sure to meet it.
-    let peak = r#"{ "kind": "expression", "sigma_t": "0.1 + 5*max(0, 1 - abs(s - 1.2345)*1e4)", "length": 2 }"#;
+    let peak =
+        r#"{ "kind": "expression", "sigma_t": "0.1 + 5*max(0, 1 - abs(s - 1.2345)*1e4)", "length": 2 }"#;
     let woodcock = r#"{ "kind": "woodcock", "majorant": 0.5 }"#;
-    refused(&spec(peak, woodcock).replace("100", "200000"), &["estimator.majorant", "0.5 is none", "s = 1.23"]);
+    refused(
+        &spec(peak, woodcock).replace("100", "200000"),
+        &["estimator.majorant", "0.5 is none", "s = 1.23"],
+    );
 }
 
 #[test]
 fn sweeps() {
     let sweep = |path: &str, values: &str| {
-        spec(PROFILE, ESTIMATOR)
-            .replace(r#""seed": 1"#, &format!(r#""seed": 1, "sweep": {{ "path": "{path}", "values": {values} }}"#))
+        spec(PROFILE, ESTIMATOR).replace(
+            r#""seed": 1"#,
+            &format!(r#""seed": 1, "sweep": {{ "path": "{path}", "values": {values} }}"#),
+        )
     };
     refused(&sweep("estimator.sigma_samp", "[]"), &["sweep.values", "at least one"]);
     refused(&sweep("estimator.sigma_samp", "[1, -1]"), &["estimator.sigma_samp"]);

@@ -1,0 +1,5 @@
+//! The program, driven as a user would: arguments and streams in, exit code, streams and files out.
+
+mod common;
+mod estimate;
+mod refusals;
