@@ -1,1 +1,34 @@
-//! The laws of the estimators as functions, their wrong twins and the hard cases as data.
+//! The laws of the estimators as functions, their wrong twins, and the hard cases as data.
+//!
+//! * [`transmittance::check`], [`collision::check`]: one law each, for any implementer.
+//! * [`scores`]: which values an estimate can take, derived from what is known of a profile.
+//! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
+//! * [`hard_cases()`]: numerically hard inputs with their exact answers.
+//! * [`catalogue()`]: all of these by name, over a set of media: what `verify` runs.
+//!
+//! Nothing here knows files, clocks, threads or plots. Every check is a function of its [`Run`] alone, so that a caller
+//! may run many at once.
+
+mod batch;
+mod catalogue;
+mod dense;
+mod hard_cases;
+mod result;
+mod run;
+mod truth;
+mod twins;
+
+pub mod collision;
+pub mod lookups;
+pub mod scores;
+pub mod transmittance;
+
+pub use batch::{BATCH, NotFinite, batch_count, batch_moments, batch_size, draw_batch, measure};
+pub use catalogue::{Check, Effort, Law, catalogue};
+pub use dense::DenseLattice;
+pub use hard_cases::{HardCase, Outcome, hard_cases};
+pub use result::CheckResult;
+pub use run::Run;
+pub use transmittance::{Evidence, Expectation, Refusal};
+pub use truth::{Truth, Unit};
+pub use twins::{Evident, Rejection, Twin, twins};

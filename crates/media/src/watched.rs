@@ -22,6 +22,11 @@ impl<F> Counted<F> {
     pub fn lookups(&self) -> u64 {
         self.lookups.get()
     }
+
+    /// The field that is counted.
+    pub fn field(&self) -> &F {
+        &self.field
+    }
 }
 
 impl<F: Extinction> Extinction for Counted<F> {

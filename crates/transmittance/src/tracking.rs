@@ -60,6 +60,11 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
         &self.sampling
     }
 
+    /// r = σ_diff / σ_samp where a collision can happen, `None` where σ_samp = 0.
+    pub fn ratio_at(&self, s: f64, sigma_t: f64) -> Option<f64> {
+        (self.sampling.sigma_t(s) > 0.0).then(|| self.ratio(s, sigma_t))
+    }
+
     /// r = σ_diff / σ_samp at `s` (eq. 5, 6).
     #[inline]
     fn ratio(&self, s: f64, sigma_t: f64) -> f64 {

@@ -1,0 +1,136 @@
+//! Every check by name: what `verify` runs.
+
+mod estimators;
+mod exact;
+mod media;
+mod single_particle;
+mod specimen;
+
+use crate::{CheckResult, Run, hard_cases, twins};
+use fairflight_sources::derive_seed;
+
+/// Which law a check is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// E\[estimate\] = exp(−τ), the variance of eq. 16 to 20 where that can be tested, and the expected look-ups.
+    Transmittance,
+    /// The variance in closed form, with a law mild enough that it is tested for sure.
+    Variance,
+    /// A biased baseline has the expectation that its theory states. Its bias is told, not judged.
+    OwnExpectation,
+    /// szirmay-kalos-2017 eq. 8, by exact algebra.
+    Collision,
+    /// A wrong twin is rejected.
+    WrongTwin,
+    /// A hard case has its exact answer, or is refused where it must be.
+    HardCase,
+}
+
+/// How thorough a run is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Seconds for all checks: enough for every law to be testable.
+    Quick,
+    /// Six times the samples.
+    Full,
+}
+
+/// A named check.
+pub struct Check {
+    /// Unique: `medium/estimator`, `collision/model`, `twin/name`, `hard/number name`.
+    pub id: String,
+    /// The law.
+    pub law: Law,
+    /// The estimator or model, in words.
+    pub estimator: String,
+    /// The medium, in words.
+    pub medium: String,
+    quick_samples: u64,
+    function: Box<dyn Fn(Run) -> CheckResult + Send + Sync>,
+}
+
+impl Check {
+    fn new(
+        id: impl Into<String>,
+        law: Law,
+        estimator: impl Into<String>,
+        medium: impl Into<String>,
+        quick_samples: u64,
+        function: impl Fn(Run) -> CheckResult + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            id: id.into(),
+            law,
+            estimator: estimator.into(),
+            medium: medium.into(),
+            quick_samples,
+            function: Box::new(function),
+        }
+    }
+
+    /// The N of this check. A twin is rejected, and a hard case decided, at the N that it states itself.
+    #[must_use]
+    pub fn samples(&self, effort: Effort) -> u64 {
+        match (effort, self.law) {
+            (Effort::Full, Law::Transmittance | Law::Variance | Law::OwnExpectation) => {
+                6 * self.quick_samples
+            }
+            _ => self.quick_samples,
+        }
+    }
+
+    /// Runs the check. Its own seed is derived from `seed` and its name, so that a check keeps its numbers when others are
+    /// added. `alpha` is its share of the false alarm: [`fairflight_stats::sidak_level`] over all checks.
+    #[must_use]
+    pub fn run(&self, effort: Effort, seed: u64, alpha: f64) -> CheckResult {
+        let seed = derive_seed(seed, fingerprint(&self.id));
+        (self.function)(Run { samples: self.samples(effort), seed, alpha })
+    }
+}
+
+impl std::fmt::Debug for Check {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Check").field("id", &self.id).field("law", &self.law).finish_non_exhaustive()
+    }
+}
+
+/// FNV-1a (Fowler, Noll & Vo 1991): a name as a number that is the same on every machine.
+fn fingerprint(name: &str) -> u64 {
+    name.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
+    })
+}
+
+/// All checks, in the order of a report.
+#[must_use]
+pub fn catalogue() -> Vec<Check> {
+    let mut checks = exact::collision_models();
+    checks.extend(media::on_every_medium());
+    checks.extend(twins().into_iter().map(|twin| {
+        let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
+        Check::new(id, Law::WrongTwin, twin.mistake, twin.profile, samples, move |run| {
+            let rejection = twin.run(run);
+            CheckResult {
+                holds: Some(rejection.rejected),
+                samples: run.samples,
+                mean_z: rejection.mean_z,
+                variance_z: rejection.variance_z,
+                reason: rejection.reason,
+                ..CheckResult::default()
+            }
+        })
+    }));
+    checks.extend(hard_cases().into_iter().map(|case| {
+        let id = format!("hard/{} {}", case.number, case.title);
+        Check::new(id, Law::HardCase, case.estimator, case.title.clone(), case.samples, move |run| {
+            let outcome = case.run(run);
+            CheckResult {
+                holds: Some(outcome.passes),
+                samples: run.samples,
+                reason: outcome.ours,
+                ..CheckResult::default()
+            }
+        })
+    }));
+    checks
+}

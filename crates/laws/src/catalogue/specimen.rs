@@ -1,0 +1,124 @@
+//! A profile that checks run on, and the law checks of each kind of estimator on it.
+
+use crate::lookups::LookupLaw;
+use crate::scores::{self, Interval, Ranged, ratio_range};
+use crate::transmittance::{Observed, check};
+use crate::{CheckResult, Expectation, Run, Truth, Unit};
+use fairflight_collision::CollisionModel;
+use fairflight_media::{
+    Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, RayQuadrature,
+    Tolerance,
+};
+use fairflight_stats::Scores;
+use fairflight_transmittance::{
+    ClosedForm, LineIntegral, RayMarching, Tracking, TransmittanceEstimator, Woodcock,
+};
+use std::sync::OnceLock;
+
+/// What a profile must know to be a specimen; a bound may be infinite.
+pub(super) trait SpecimenField:
+    Extinction + Breakpoints + Majorant + Minorant + Clone + Send + Sync + 'static
+{
+}
+impl<F: Extinction + Breakpoints + Majorant + Minorant + Clone + Send + Sync + 'static> SpecimenField for F {}
+
+/// A named profile with its quadrature, which is sampled once for all checks.
+pub(super) struct Specimen<F> {
+    pub(super) name: &'static str,
+    pub(super) field: F,
+    /// Divides the samples where look-ups are expensive.
+    pub(super) frugality: u64,
+    closed_form: Option<Truth>,
+    tolerance: Tolerance,
+    quadrature: OnceLock<(RayQuadrature<F>, Truth)>,
+}
+
+impl<F: SpecimenField> Specimen<F> {
+    /// A profile of which the optical thickness has a closed form.
+    pub(super) fn closed(name: &'static str, field: F) -> Self
+    where
+        F: OpticalThickness,
+    {
+        let truth = Truth::closed_form(&field);
+        Self { closed_form: Some(truth), ..Self::integrated(name, field, Tolerance::TIGHT) }
+    }
+
+    /// A profile whose optical thickness is found by quadrature to `tolerance`.
+    pub(super) fn integrated(name: &'static str, field: F, tolerance: Tolerance) -> Self {
+        Self { name, field, frugality: 1, closed_form: None, tolerance, quadrature: OnceLock::new() }
+    }
+
+    fn prepared(&self) -> (RayQuadrature<F>, Truth) {
+        let (quadrature, truth) = self.quadrature.get_or_init(|| {
+            let mut quadrature = RayQuadrature::new(self.field.clone(), &[]);
+            let truth =
+                self.closed_form.unwrap_or_else(|| Truth::quadrature(&mut quadrature, self.tolerance));
+            (quadrature, truth)
+        });
+        (quadrature.clone(), *truth)
+    }
+
+    /// The law of `estimator`, whose own breakpoints are `also`.
+    fn examine<'f, E>(
+        &'f self,
+        estimator: &E,
+        also: &[f64],
+        scores: impl Fn(Unit) -> Scores,
+        lookups: LookupLaw,
+        run: Run,
+    ) -> CheckResult
+    where
+        E: ClosedForm<F>,
+        for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
+    {
+        let (mut quadrature, truth) = self.prepared();
+        quadrature.split_at(also);
+        let theory = estimator.theory(&mut quadrature, truth.optical_thickness, self.tolerance);
+        let scores = scores(Unit::of(truth.optical_thickness));
+        let expected = Expectation { truth, theory, scores, lookups };
+        CheckResult::of_evidence(&check(&self.field, estimator, &expected, run))
+    }
+
+    pub(super) fn woodcock(&self, run: Run) -> CheckResult {
+        self.examine(&Woodcock, &[], scores::woodcock, LookupLaw::MeanOnly, run)
+    }
+
+    pub(super) fn line_integral(&self, splits: u32, run: Run) -> CheckResult {
+        let Ok(estimator) = LineIntegral::new(splits) else {
+            return CheckResult::exact(false, "refused: no splits");
+        };
+        let thickness = self.field.majorant() * self.field.length();
+        let scores = |unit| scores::line_integral(thickness, unit);
+        self.examine(&estimator, &[], scores, LookupLaw::MeanOnly, run)
+    }
+
+    pub(super) fn ray_marching(&self, estimator: &RayMarching, run: Run) -> CheckResult {
+        let (mut quadrature, truth) = self.prepared();
+        let theory = estimator.theory(&mut quadrature, truth.optical_thickness, self.tolerance);
+        let range = Interval::bounds_of(&self.field);
+        let scores = |unit| scores::ray_marching(range, self.field.length(), unit);
+        let result = self.examine(estimator, &[], scores, LookupLaw::Fixed, run);
+        let bias = theory.relative_mean - 1.0;
+        CheckResult {
+            reason: format!("relative bias {bias:.3e} against exp(-tau); {}", result.reason),
+            ..result
+        }
+    }
+
+    pub(super) fn tracking<M, C, R>(&self, tracking: &Tracking<M, C, R>, run: Run) -> CheckResult
+    where
+        M: CollisionModel,
+        C: OpticalThickness + Breakpoints + Ranged,
+        R: InvertOpticalThickness + Breakpoints + Ranged,
+    {
+        let (control, sampling) = (tracking.control(), tracking.sampling());
+        let mut also = control.breakpoints();
+        also.extend(sampling.breakpoints());
+        let ratios = ratio_range(Interval::bounds_of(&self.field), control.range(), sampling.range());
+        let main = control.optical_thickness(0.0, self.field.length());
+        let survives = ratios.is_some_and(|ratios| scores::weights(tracking.model(), ratios).survives);
+        let law = if survives { LookupLaw::Poisson } else { LookupLaw::MeanOnly };
+        let scores = |unit| scores::tracking(tracking.model(), ratios, main, unit);
+        self.examine(tracking, &also, scores, law, run)
+    }
+}

@@ -1,0 +1,79 @@
+//! Rows 3, 4 and 5: a sampling extinction below the extinction, and negative extinction.
+
+use super::judging::judge_walk;
+use super::{HardCase, LAWFUL, Outcome};
+use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
+use fairflight_media::{Constant, PiecewiseConstant, Vacuum};
+use fairflight_sources::Seeded;
+use fairflight_transmittance::{Tracking, TransmittanceEstimator};
+
+fn double_particle() -> DoubleParticle {
+    DoubleParticle { albedo: Albedo::default() }
+}
+
+fn constant(sigma: f64, length: f64) -> Constant {
+    Constant::new(sigma, length).expect(LAWFUL)
+}
+
+pub(super) fn cases() -> Vec<HardCase> {
+    vec![
+        HardCase::statistical(
+            3,
+            "sigma_samp 0.5 below sigma_t 1, length 2",
+            "double particle",
+            "0.1353 = exp(-2)",
+            200_000,
+            |run| {
+                let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(0.5, 2.0));
+                judge_walk(&constant(1.0, 2.0), &estimator, run)
+            },
+        ),
+        HardCase::statistical(
+            3,
+            "sigma_samp 0.5 below sigma_t 1, length 2, albedo 0",
+            "single particle, adaptive",
+            "0.1353 = exp(-2)",
+            200_000,
+            |run| {
+                let model = SingleParticle { version: Version::Adaptive, albedo: Albedo::default() };
+                let estimator = Tracking::new(model, Vacuum::new(2.0), constant(0.5, 2.0));
+                judge_walk(&constant(1.0, 2.0), &estimator, run)
+            },
+        ),
+        HardCase::statistical(
+            4,
+            "extinction 1 then -0.5, length 1 each",
+            "double particle, sigma_samp 2",
+            "0.6065 = exp(-0.5)",
+            100_000,
+            |run| {
+                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, -0.5]).expect(LAWFUL);
+                let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(2.0, 2.0));
+                judge_walk(&field, &estimator, run)
+            },
+        ),
+        HardCase::statistical(
+            5,
+            "extinction -0.5, length 2",
+            "double particle, sigma_samp 2",
+            "2.718 = exp(1)",
+            100_000,
+            |run| {
+                let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(2.0, 2.0));
+                judge_walk(&constant(-0.5, 2.0), &estimator, run)
+            },
+        ),
+        HardCase::deterministic(
+            5,
+            "extinction -0.5, length 2, as its own control",
+            "double particle, sigma_samp 1",
+            "2.718 = exp(1)",
+            "exact",
+            || {
+                let field = constant(-0.5, 2.0);
+                let estimator = Tracking::new(double_particle(), field, constant(1.0, 2.0));
+                Outcome::value(estimator.estimate(&field, &mut Seeded::new(5)), 1.0_f64.exp(), 0.0)
+            },
+        ),
+    ]
+}

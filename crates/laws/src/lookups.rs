@@ -1,0 +1,54 @@
+//! The law of cost: the mean number of look-ups is the expected one.
+
+use fairflight_stats::{ClosedMoments, Reference, Scores};
+
+/// What is known of the number of look-ups of one estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LookupLaw {
+    /// A Poisson variate: every particle survives every collision, and collisions are a Poisson process.
+    Poisson,
+    /// Always the same number.
+    Fixed,
+    /// Only its mean.
+    MeanOnly,
+}
+
+/// Relative error granted to an expected number of look-ups, which is an integral by quadrature.
+const QUADRATURE: f64 = 1e-8;
+
+/// What the look-ups of one estimate are judged against.
+#[must_use]
+pub fn reference(expected: f64, law: LookupLaw) -> Reference {
+    let moments = match law {
+        LookupLaw::Poisson => Some(poisson(expected)),
+        LookupLaw::Fixed => Some(ClosedMoments::from_central(expected, &[Some(0.0); 7])),
+        LookupLaw::MeanOnly => None,
+    };
+    Reference { mean: expected, error: QUADRATURE * expected, moments, scores: Scores::Unbounded }
+}
+
+/// Every cumulant of a Poisson law is its mean: m_n = Σ_{j=2..n} C(n − 1, j − 1) λ m_{n−j}.
+fn poisson(mean: f64) -> ClosedMoments {
+    let mut central = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    for n in 2..central.len() {
+        let mut binomial = 1.0;
+        for j in 2..=n {
+            binomial *= (n - j + 1) as f64 / (j - 1) as f64;
+            central[n] += binomial * mean * central[n - j];
+        }
+    }
+    ClosedMoments::from_central(mean, &central[2..].iter().copied().map(Some).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_moments_of_a_poisson_law() {
+        let law = poisson(2.0);
+        let found = [law.variance, law.third, law.fourth, law.fifth, law.sixth];
+        // λ, λ, λ + 3λ², λ + 10λ², λ + 25λ² + 15λ³
+        assert_eq!(found, [2.0, 2.0, 14.0, 42.0, 222.0].map(Some));
+    }
+}

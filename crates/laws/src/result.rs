@@ -1,0 +1,67 @@
+//! The outcome of one named check, for a table.
+
+use crate::{Evidence, Refusal};
+use fairflight_stats::Verdict;
+
+/// What a check found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CheckResult {
+    /// Whether the law holds; `None`: not testable at this N.
+    pub holds: Option<bool>,
+    /// Samples drawn; 0 for exact algebra.
+    pub samples: u64,
+    /// The z-score of the mean, where there is one; evidence only if the reason says so.
+    pub mean_z: Option<f64>,
+    /// That of the variance.
+    pub variance_z: Option<f64>,
+    /// Whether the variance was tested against its closed form, and not only compared with it.
+    pub variance_is_tested: bool,
+    /// That of the number of look-ups.
+    pub lookups_z: Option<f64>,
+    /// The smallest relative bias of the mean that the run would have detected with probability 0.99.
+    pub detectable_relative_bias: Option<f64>,
+    /// The N that would make the mean testable, where it is not.
+    pub samples_needed: Option<f64>,
+    /// Why, in words.
+    pub reason: String,
+}
+
+impl CheckResult {
+    /// An exact outcome.
+    #[must_use]
+    pub fn exact(holds: bool, reason: impl Into<String>) -> Self {
+        Self { holds: Some(holds), reason: reason.into(), ..Self::default() }
+    }
+
+    /// The outcome of a verdict on estimates.
+    #[must_use]
+    pub fn of_verdict(verdict: &Verdict, samples: u64) -> Self {
+        Self {
+            holds: verdict.sound,
+            samples,
+            mean_z: verdict.mean_z,
+            variance_z: verdict.variance_z,
+            variance_is_tested: verdict.variance_p.is_some(),
+            lookups_z: None,
+            detectable_relative_bias: verdict.detectable_relative_bias,
+            samples_needed: verdict.samples_needed,
+            reason: verdict.reason.clone(),
+        }
+    }
+
+    /// The outcome of a whole law check. What was refused does not hold.
+    #[must_use]
+    pub fn of_evidence(evidence: &Result<Evidence, Refusal>) -> Self {
+        let evidence = match evidence {
+            Ok(evidence) => evidence,
+            Err(refusal) => return Self::exact(false, format!("refused: {refusal}")),
+        };
+        let estimates = Self::of_verdict(&evidence.verdict, evidence.estimates.count());
+        Self {
+            holds: evidence.holds(),
+            lookups_z: evidence.lookups_verdict.mean_z,
+            reason: format!("{}; look-ups {}", estimates.reason, evidence.lookups_verdict.reason),
+            ..estimates
+        }
+    }
+}

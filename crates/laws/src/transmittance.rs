@@ -1,0 +1,165 @@
+//! The law of transmittance as a function of any estimator: E\[estimate\] = exp(−τ).
+//!
+//! One run tests three things at once: the mean, the variance against its closed form, and the number of look-ups; and
+//! that every look-up was lawful.
+
+use crate::lookups::{self, LookupLaw};
+use crate::{NotFinite, Run, Truth, Unit, batch_count, batch_moments, draw_batch};
+use fairflight_media::{Counted, Domain, Extinction, Violation, Watched};
+use fairflight_stats::reference::ROUNDING;
+use fairflight_stats::{ClosedMoments, Moments, Reference, Scores, Verdict, judge};
+use fairflight_transmittance::{Theory, TransmittanceEstimator};
+
+/// What the estimates of one profile should be like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expectation {
+    /// The optical thickness.
+    pub truth: Truth,
+    /// The law of one estimate, relative to exp(−τ).
+    pub theory: Theory,
+    /// The values that one estimate can take, in [`Unit::of`] the optical thickness.
+    pub scores: Scores,
+    /// What is known of the look-ups of one estimate.
+    pub lookups: LookupLaw,
+}
+
+impl Expectation {
+    /// The unit of the estimates.
+    #[must_use]
+    pub fn unit(&self) -> Unit {
+        Unit::of(self.truth.optical_thickness)
+    }
+
+    /// What the estimates are judged against, in [`Self::unit`].
+    ///
+    /// The error of the mean is that of τ, and its rounding: ε of τ is ε τ of exp(−τ), which shows in no logarithm of a
+    /// mean of 1. Where T is out of the range of numbers nothing is known but the mean.
+    #[must_use]
+    pub fn reference(&self) -> Reference {
+        let Self { truth, theory, scores, .. } = self;
+        let one = self.unit().exp(-truth.optical_thickness);
+        let mean = one * theory.relative_mean;
+        let error = mean * (truth.error.exp_m1() + ROUNDING * truth.optical_thickness.abs());
+        let moments =
+            (one == 1.0).then(|| ClosedMoments::from_central(mean, &theory.relative_central.map(Some)));
+        Reference { mean, error, moments, scores: *scores }
+    }
+}
+
+/// What came out of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    /// The moments of the estimates, in the unit of the expectation.
+    pub estimates: Moments,
+    /// On mean and variance.
+    pub verdict: Verdict,
+    /// The moments of the number of look-ups.
+    pub lookups: Moments,
+    /// On the mean number of look-ups.
+    pub lookups_verdict: Verdict,
+}
+
+impl Evidence {
+    /// Whether all laws hold; `None` if none is broken and one is not testable.
+    #[must_use]
+    pub fn holds(&self) -> Option<bool> {
+        match (self.verdict.sound, self.lookups_verdict.sound) {
+            (Some(false), _) | (_, Some(false)) => Some(false),
+            (Some(true), Some(true)) => Some(true),
+            _ => None,
+        }
+    }
+}
+
+/// Why there is no evidence.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// A look-up found what the estimator is not defined for.
+    #[error("sigma_t = {} at s = {} is outside what the estimator admits", .0.sigma_t, .0.s)]
+    Unlawful(Violation),
+    /// An estimate is no number.
+    #[error(transparent)]
+    NotFinite(#[from] NotFinite),
+}
+
+/// The values of σ_t that an estimator admits on a field: what a law check watches for.
+#[derive(Clone, Copy, Debug)]
+pub struct Admitted<G, E> {
+    /// The field.
+    pub field: G,
+    /// The estimator.
+    pub estimator: E,
+}
+
+impl<G: Extinction, E: TransmittanceEstimator<G>> Domain for Admitted<G, E> {
+    #[inline]
+    fn admits(&self, s: f64, sigma_t: f64) -> bool {
+        self.estimator.admits(&self.field, s, sigma_t)
+    }
+}
+
+/// A field whose look-ups are counted and watched.
+pub type Observed<G, E> = Counted<Watched<G, Admitted<G, E>>>;
+
+/// Runs `estimator` on `field` (both cheap to copy: pass references) and judges mean, variance and look-ups.
+///
+/// Half of the false alarm goes to the estimates, half to the look-ups.
+///
+/// # Errors
+/// If a look-up or an estimate is not lawful: a law says nothing then.
+pub fn check<G, E>(field: G, estimator: E, expected: &Expectation, run: Run) -> Result<Evidence, Refusal>
+where
+    G: Extinction + Copy,
+    E: TransmittanceEstimator<G> + TransmittanceEstimator<Observed<G, E>> + Copy,
+{
+    let observed: Observed<G, E> = Counted::new(Watched::new(field, Admitted { field, estimator }));
+    let scale = expected.unit().scale();
+    let (mut estimates, mut lookups) = (Moments::new(), Moments::new());
+    let (mut values, mut counts) = (Vec::new(), Vec::new());
+    for batch in 0..batch_count(run.samples) {
+        counts.clear();
+        draw_batch(run.seed, batch, run.samples, &mut values, |source| {
+            let before = observed.lookups();
+            let estimate = scale * estimator.estimate(&observed, source);
+            counts.push((observed.lookups() - before) as f64);
+            estimate
+        });
+        if let Some(violation) = observed.field().violation() {
+            return Err(Refusal::Unlawful(violation));
+        }
+        estimates.merge(&batch_moments(run.seed, batch, &values)?);
+        lookups.merge(&Moments::from_slice(&counts));
+    }
+    let half = 0.5 * run.alpha;
+    Ok(Evidence {
+        verdict: judge(&estimates, &expected.reference(), half),
+        lookups_verdict: judge(
+            &lookups,
+            &lookups::reference(expected.theory.lookups, expected.lookups),
+            half,
+        ),
+        estimates,
+        lookups,
+    })
+}
+
+/// As [`check`] for the estimates alone, unwatched and uncounted: what a wrong twin is tried with. All of the false
+/// alarm goes to the estimates.
+///
+/// # Errors
+/// If an estimate is no number.
+pub fn check_estimates<G, E>(
+    field: G,
+    estimator: E,
+    expected: &Expectation,
+    run: Run,
+) -> Result<Verdict, NotFinite>
+where
+    G: Extinction,
+    E: TransmittanceEstimator<G>,
+{
+    let scale = expected.unit().scale();
+    let measured =
+        crate::measure(run.seed, run.samples, |source| scale * estimator.estimate(&field, source))?;
+    Ok(judge(&measured, &expected.reference(), run.alpha))
+}

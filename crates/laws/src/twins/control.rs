@@ -1,0 +1,98 @@
+//! Mistakes with the control.
+
+use super::trial::{LAWFUL, judged, theory_of};
+use super::{Evident, Twin};
+use fairflight_collision::{Albedo, DoubleParticle};
+use fairflight_media::{
+    Breakpoints, Constant, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
+    PiecewiseLinear,
+};
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{Explorers, Tracking, TransmittanceEstimator};
+
+fn double_particle() -> DoubleParticle {
+    DoubleParticle { albedo: Albedo::default() }
+}
+
+/// A control whose transmittance is left out.
+struct WithoutThickness<C>(C);
+
+impl<C: Extinction> Extinction for WithoutThickness<C> {
+    fn sigma_t(&self, s: f64) -> f64 {
+        self.0.sigma_t(s)
+    }
+    fn length(&self) -> f64 {
+        self.0.length()
+    }
+}
+
+impl<C: OpticalThickness> OpticalThickness for WithoutThickness<C> {
+    fn optical_thickness(&self, _from: f64, _to: f64) -> f64 {
+        0.0 // right: that of the control
+    }
+}
+
+/// Fits its control to the points of its own walk.
+struct FitsItsOwnWalk {
+    sampling: Constant,
+}
+
+impl<F: Extinction> TransmittanceEstimator<F> for FitsItsOwnWalk {
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        let mut points = vec![0.0];
+        while let Some(s) = self.sampling.invert(points[points.len() - 1], source.next_exponential()) {
+            points.push(s);
+        }
+        points.push(field.length());
+        points.dedup();
+        let values = points.iter().map(|&s| field.sigma_t(s)).collect();
+        // right: points that know nothing of the walk
+        let control = PiecewiseLinear::new(points.clone(), values).expect("increasing and finite");
+        let walk = &points[1..points.len() - 1];
+        let weights =
+            walk.iter().map(|&s| 1.0 - (field.sigma_t(s) - control.sigma_t(s)) / self.sampling.sigma_t(s));
+        weights.product::<f64>() * (-control.optical_thickness(0.0, field.length())).exp()
+    }
+    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
+        true
+    }
+}
+
+/// All twins of this file.
+pub(super) fn twins() -> Vec<Twin> {
+    vec![
+        // E = T / T_main = e^{0.5·4} T on the steps below.
+        Twin::new(
+            "without_the_control_s_transmittance",
+            "T = 1 for T = T_main(S): the control subtracted but not multiplied",
+            "sigma_t 1, 0.2, 0.6 (lengths 1, 1.5, 1.5), control 0.5, sigma_samp 2",
+            (20_000, Evident::Mean { z: 1920.0 }),
+            |run| {
+                let field =
+                    PiecewiseConstant::new(vec![0.0, 1.0, 2.5, 4.0], vec![1.0, 0.2, 0.6]).expect(LAWFUL);
+                let control = Constant::new(0.5, 4.0).expect(LAWFUL);
+                let sampling = Constant::new(2.0, 4.0).expect(LAWFUL);
+                let right = Tracking::new(double_particle(), control, sampling);
+                let theory = theory_of(&field, &right, &[]);
+                let twin = Tracking::new(double_particle(), WithoutThickness(control), sampling);
+                judged(&field, &twin, theory, run)
+            },
+        ),
+        // Every r is zero: the estimate is exp(−τ of the fit), wherever the points fell. The z is measured.
+        Twin::new(
+            "fits_its_own_walk",
+            "the interaction points of the walk used as its explorer points (warned of in errata)",
+            "a tent from 0 over 2 to 0, length 3, sigma_samp 2",
+            (50_000, Evident::Mean { z: 465.0 }),
+            |run| {
+                let field = PiecewiseLinear::new(vec![0.0, 1.5, 3.0], vec![0.0, 2.0, 0.0]).expect(LAWFUL);
+                let sampling = Constant::new(2.0, 3.0).expect(LAWFUL);
+                let control = Explorers::through(&field, 4).expect(LAWFUL);
+                let also = control.breakpoints();
+                let right = Tracking::new(double_particle(), control, sampling);
+                let theory = theory_of(&field, &right, &also);
+                judged(&field, &FitsItsOwnWalk { sampling }, theory, run)
+            },
+        ),
+    ]
+}

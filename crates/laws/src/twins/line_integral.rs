@@ -1,0 +1,97 @@
+//! Mistakes in raab-2008 algorithm 2, both in where the first collision lies.
+
+use super::trial::{LAWFUL, judged, theory_of};
+use super::{Evident, Twin};
+use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{LineIntegral, TransmittanceEstimator, Woodcock};
+
+/// Algorithm 2 with the optical distance of the first collision as a function of u in \[0, 1) and p_V.
+struct WrongFirstStep {
+    splits: u32,
+    majorant: f64,
+    first: fn(f64, f64) -> f64,
+}
+
+impl<F: Extinction> TransmittanceEstimator<F> for WrongFirstStep {
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        let field = Bounded::new(field, self.majorant).expect(LAWFUL);
+        let p_volume = -(-field.majorant() * field.length()).exp_m1();
+        let n = f64::from(self.splits);
+        let shift = source.next_uniform();
+        let mut escaped = 0.0;
+        for k in 0..self.splits {
+            let depth = (self.first)((f64::from(k) + shift) / n, p_volume);
+            escaped += flight(&field, depth, source);
+        }
+        1.0 - p_volume + p_volume * escaped / n
+    }
+    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
+        true
+    }
+}
+
+/// 1 if a flight with this first step escapes.
+fn flight<F: Majorant, S: UniformSource + ?Sized>(field: &F, first: f64, source: &mut S) -> f64 {
+    let s = first / field.majorant();
+    if s >= field.length() {
+        return 1.0;
+    }
+    if source.next_uniform() * field.majorant() < field.sigma_t(s) {
+        return 0.0;
+    }
+    // The rest is an ordinary flight through what is left.
+    Woodcock.estimate(&Behind { field, from: s }, source)
+}
+
+/// The part of a field behind a point.
+struct Behind<'a, F> {
+    field: &'a F,
+    from: f64,
+}
+
+impl<F: Extinction> Extinction for Behind<'_, F> {
+    fn sigma_t(&self, s: f64) -> f64 {
+        self.field.sigma_t(self.from + s)
+    }
+    fn length(&self) -> f64 {
+        self.field.length() - self.from
+    }
+}
+
+impl<F: Majorant> Majorant for Behind<'_, F> {
+    fn majorant(&self) -> f64 {
+        self.field.majorant()
+    }
+}
+
+fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> f64) -> Twin {
+    let profile = "sigma_t 1, 0.1 (length 1 each), majorant 1, 4 splits";
+    Twin::new(id, mistake, profile, (50_000, Evident::Mean { z }), move |run| {
+        let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.1]).expect(LAWFUL);
+        let right = LineIntegral::new(4).expect(LAWFUL);
+        let theory = theory_of(&field, &right, &[]);
+        judged(&field, &WrongFirstStep { splits: 4, majorant: 1.0, first }, theory, run)
+    })
+}
+
+/// All twins of this file.
+pub(super) fn twins() -> Vec<Twin> {
+    vec![
+        // The flight may leave at once, which p_V has already excluded: E = (1 − p_V) + p_V T = 0.423 for 0.333.
+        twin(
+            "first_point_not_conditioned",
+            "first variate in [0, 1) for [0, p_V): the first point may lie beyond the segment",
+            214.0,
+            |u, _p_volume| -(-u).ln_1p(),
+        ),
+        // −ln of a variate in [0, p_V): no first collision nearer than −ln p_V, and flights that leave at once. The z is
+        // measured.
+        twin(
+            "printed_logarithm",
+            "−log(u) for −ln(1 − u) with u in [0, p_V) (raab-2008 algorithm 1 put into algorithm 2: 0.420 for 0.331)",
+            322.0,
+            |u, p_volume| -(u * p_volume).ln(),
+        ),
+    ]
+}

@@ -1,0 +1,73 @@
+//! Mistakes with the sampling extinction.
+
+use super::trial::{LAWFUL, judged, theory_of};
+use super::{Evident, Twin};
+use fairflight_collision::{Albedo, DoubleParticle};
+use fairflight_media::{
+    Breakpoints, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant, Vacuum,
+};
+use fairflight_transmittance::Tracking;
+
+/// A piecewise rate that draws as it is and divides by its mean.
+struct DividesByItsMean(PiecewiseConstant);
+
+impl Extinction for DividesByItsMean {
+    fn sigma_t(&self, _s: f64) -> f64 {
+        self.0.optical_thickness(0.0, self.0.length()) / self.0.length() // right: the rate at s
+    }
+    fn length(&self) -> f64 {
+        self.0.length()
+    }
+}
+
+impl OpticalThickness for DividesByItsMean {
+    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
+        self.0.optical_thickness(from, to)
+    }
+}
+
+impl InvertOpticalThickness for DividesByItsMean {
+    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
+        self.0.invert(from, depth)
+    }
+}
+
+/// A rate that vanishes where there is something to collide with: the rate itself is the wrong line.
+fn with_a_hole() -> PiecewiseConstant {
+    PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.0]).expect(LAWFUL)
+}
+
+fn tracking<R: InvertOpticalThickness>(sampling: R) -> Tracking<DoubleParticle, Vacuum, R> {
+    Tracking::new(DoubleParticle { albedo: Albedo::default() }, Vacuum::new(2.0), sampling)
+}
+
+/// All twins of this file.
+pub(super) fn twins() -> Vec<Twin> {
+    let field = || PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
+    vec![
+        // Rate 2 and 0.5, mean 1.25: E = exp(−(1·2 + 0.25·0.5)/1.25) = exp(−1.7) for exp(−1.25).
+        Twin::new(
+            "divides_by_the_mean_rate",
+            "r = sigma_diff over the mean of a piecewise sigma_samp, for its value at s",
+            "sigma_t 1, 0.25 (length 1 each), sigma_samp 2, 0.5",
+            (50_000, Evident::Mean { z: 87.0 }),
+            move |run| {
+                let rate = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.5]).expect(LAWFUL);
+                let theory = theory_of(&field(), &tracking(rate.clone()), &rate.breakpoints());
+                judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
+            },
+        ),
+        // E = exp(−1) for exp(−1.25); its variance is that of the first cell, exp(0.5) − 1.
+        Twin::new(
+            "rate_with_a_hole",
+            "sigma_samp = 0 where sigma_t is not: silently no collision there",
+            "sigma_t 1, 0.25 (length 1 each), sigma_samp 2, 0",
+            (50_000, Evident::Mean { z: 78.8 }),
+            move |run| {
+                let twin = tracking(with_a_hole());
+                let theory = theory_of(&field(), &twin, &with_a_hole().breakpoints());
+                judged(&field(), &twin, theory, run)
+            },
+        ),
+    ]
+}

@@ -1,0 +1,29 @@
+//! Every hard case is right, or refused where it must be.
+
+use fairflight_laws::{Law, Run, hard_cases};
+use fairflight_tests::{SEED, run_checks};
+
+#[test]
+fn every_hard_case_passes() {
+    for (check, result) in run_checks(|check| check.law == Law::HardCase) {
+        assert_eq!(result.holds, Some(true), "{}: {}", check.id, result.reason);
+    }
+}
+
+#[test]
+fn the_rows_of_transmittance_are_all_there() {
+    let mut rows: Vec<u32> = hard_cases().iter().map(|case| case.number).collect();
+    rows.dedup();
+    assert_eq!(rows, [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14, 15, 20, 21]);
+}
+
+#[test]
+fn a_broken_medium_is_refused_and_nothing_else_is() {
+    for case in hard_cases() {
+        let outcome = case.run(Run { samples: case.samples.min(1000), seed: SEED, alpha: 1e-9 });
+        assert_eq!(outcome.refused, case.number == 15, "{}: {}", case.title, outcome.ours);
+        if outcome.refused {
+            assert!(outcome.ours.contains(" at s = "), "the point is named: {}", outcome.ours);
+        }
+    }
+}

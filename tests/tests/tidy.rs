@@ -1,0 +1,214 @@
+//! Invariants of the repository that no compiler checks.
+
+use fairflight_tests::repository;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// All files below a folder of the repository, build outputs apart; none where it does not exist.
+fn files(folder: &str) -> Vec<PathBuf> {
+    fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let name = entry.file_name();
+            if path.is_dir() {
+                if name != "target" && name != ".git" {
+                    collect(&path, found);
+                }
+            } else {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    collect(&repository().join(folder), &mut found);
+    found.sort();
+    found
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|found| extensions.iter().any(|extension| found == *extension))
+}
+
+fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+    let is_source = |path: &PathBuf| has_extension(path, &["rs"]);
+    files(folder)
+        .into_iter()
+        .filter(is_source)
+        .map(|path| (path.clone(), fs::read_to_string(&path).unwrap()))
+        .collect()
+}
+
+/// The crates of this workspace that a manifest names, with the name of its own.
+fn fairflight_dependencies(manifest: &Path) -> Vec<String> {
+    let text = fs::read_to_string(manifest).unwrap();
+    text.lines()
+        .filter_map(|line| line.strip_prefix("fairflight-"))
+        .filter_map(|rest| rest.split([' ', '=', '.']).next())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// design.md, "Dependency direction": what a crate names directly; what that reaches is allowed too.
+const ARROWS: [(&str, &[&str]); 13] = [
+    ("sources", &[]),
+    ("stats", &[]),
+    ("media", &[]),
+    ("volumes", &[]),
+    ("collision", &["sources", "media"]),
+    ("transmittance", &["collision"]),
+    ("freeflight", &["collision"]),
+    ("scene", &["media"]),
+    ("paths", &["scene", "freeflight", "transmittance"]),
+    ("vpl", &["paths"]),
+    ("metropolis", &["paths"]),
+    ("compensation", &["vpl"]),
+    ("laws", &["stats", "transmittance", "freeflight", "paths", "vpl", "metropolis", "compensation"]),
+];
+
+fn reachable(from: &str) -> BTreeSet<&'static str> {
+    let direct = ARROWS.iter().find(|(name, _)| *name == from).map_or(&[][..], |(_, direct)| *direct);
+    direct.iter().flat_map(|name| reachable(name).into_iter().chain([*name])).collect()
+}
+
+#[test]
+fn dependencies_point_one_way() {
+    for manifest in files("crates").iter().filter(|path| path.ends_with("Cargo.toml")) {
+        let folder = manifest.parent().and_then(Path::file_name).unwrap().to_str().unwrap();
+        assert!(ARROWS.iter().any(|(name, _)| *name == folder), "{folder} is not in the design");
+        let allowed = reachable(folder);
+        for dependency in fairflight_dependencies(manifest) {
+            assert!(allowed.contains(dependency.as_str()), "{folder} must not depend on {dependency}");
+        }
+    }
+    for (user, other) in [("harness", "tests"), ("tests", "harness")] {
+        let named = fairflight_dependencies(&repository().join(user).join("Cargo.toml"));
+        assert!(named.iter().all(|name| name != other), "{user} must not depend on {other}");
+    }
+}
+
+#[test]
+fn crates_know_no_files_clocks_threads_or_terminals() {
+    const FORBIDDEN: [&str; 9] = [
+        "std::fs",
+        "std::thread",
+        "std::time",
+        "std::env",
+        "std::process",
+        "std::net",
+        "println!",
+        "eprint!",
+        "dbg!",
+    ];
+    for (path, text) in sources("crates") {
+        let is_library = path.components().any(|part| part.as_os_str() == "src");
+        for word in FORBIDDEN {
+            let mut code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let is_used = code.any(|line| line.contains(word));
+            assert!(!is_library || !is_used, "{} uses {word}", path.display());
+        }
+    }
+}
+
+/// Words like `novak-2014`: lower-case letters and hyphens, then a year.
+fn citation_keys(text: &str) -> BTreeSet<String> {
+    let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    text.split(|c| !is_part(c))
+        .filter(|word| {
+            let Some((name, year)) = word.rsplit_once('-') else { return false };
+            let is_name = name.starts_with(|c: char| c.is_ascii_lowercase())
+                && name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+            is_name
+                && year.len() == 4
+                && (year.starts_with("19") || year.starts_with("20"))
+                && year.chars().all(|c| c.is_ascii_digit())
+        })
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn a_citation_key_is_recognised() {
+    let keys =
+        citation_keys("as szirmay-kalos-2017 eq. 4, not (novak-2014) or 2^-2017, SAND2008-6212, 1999-2000.");
+    assert_eq!(keys.into_iter().collect::<Vec<_>>(), ["novak-2014", "szirmay-kalos-2017"]);
+}
+
+#[test]
+fn every_citation_key_is_listed() {
+    let references = fs::read_to_string(repository().join("docs/REFERENCES.md")).unwrap_or_default();
+    let listed = citation_keys(&references);
+    let texts = sources("crates").into_iter().chain(
+        files("docs")
+            .into_iter()
+            .filter(|path| has_extension(path, &["md"]))
+            .map(|path| (path.clone(), fs::read_to_string(&path).unwrap())),
+    );
+    let missing: BTreeSet<String> = texts
+        .flat_map(|(path, text)| {
+            citation_keys(&text)
+                .into_iter()
+                .map(move |key| (key, path.display().to_string()))
+                .collect::<Vec<_>>()
+        })
+        .filter(|(key, _)| !listed.contains(key))
+        .map(|(key, path)| format!("{key} in {path}"))
+        .collect();
+    assert!(missing.is_empty(), "not in docs/REFERENCES.md: {missing:#?}");
+}
+
+#[test]
+fn a_long_file_says_why() {
+    const MOST_LINES: usize = 400;
+    for folder in ["crates", "harness", "tests"] {
+        for (path, text) in sources(folder) {
+            let lines = text.lines().count();
+            let heading: String = text.lines().take_while(|line| line.starts_with("//!")).collect();
+            let explains = ["longer than", "long because"].iter().any(|words| heading.contains(words));
+            assert!(lines <= MOST_LINES || explains, "{}: {lines} lines without a reason", path.display());
+        }
+    }
+}
+
+#[test]
+fn no_path_of_a_machine() {
+    // Spelled in two parts, so that this file has none.
+    let forbidden = [["/ho", "me/"], ["/wo", "rk/"], ["/Us", "ers/"], ["/ro", "ot/"], ["C:", "\\"]]
+        .map(|parts| parts.concat());
+    for folder in ["crates", "harness", "tests", "docs", "reports"] {
+        let is_text =
+            |path: &PathBuf| has_extension(path, &["rs", "md", "toml", "json", "html", "csv", "svg"]);
+        for path in files(folder).into_iter().filter(is_text) {
+            let text = fs::read_to_string(&path).unwrap_or_default();
+            for word in &forbidden {
+                assert!(!text.contains(word.as_str()), "{} contains {word}", path.display());
+            }
+        }
+    }
+}
+
+/// Whether `folder` or one above it, up to `root`, has results that state their command.
+fn states_its_command(folder: &Path, root: &Path) -> bool {
+    let results = fs::read_to_string(folder.join("results.json")).unwrap_or_default();
+    let json: serde_json::Value = serde_json::from_str(&results).unwrap_or_default();
+    if json["provenance"]["command"].as_str().is_some_and(|command| !command.is_empty()) {
+        return true;
+    }
+    folder != root && folder.parent().is_some_and(|above| states_its_command(above, root))
+}
+
+#[test]
+fn reports_are_generated_and_say_by_what() {
+    let root = repository().join("reports/reference");
+    for path in files("reports/reference") {
+        // A page that stands alone says it in an HTML comment.
+        let text = if has_extension(&path, &["md", "html", "svg"]) {
+            fs::read_to_string(&path).unwrap()
+        } else {
+            String::new()
+        };
+        let comment = text.split("<!--").skip(1).any(|comment| comment.contains("fairflight"));
+        let covered = path.parent().is_some_and(|folder| states_its_command(folder, &root));
+        assert!(comment || covered, "{} does not say what made it", path.display());
+    }
+}
