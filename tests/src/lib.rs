@@ -28,3 +28,8 @@ pub fn run_checks(wanted: impl Fn(&Check) -> bool) -> Vec<(Check, CheckResult)> 
 pub fn repository() -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), ".."].iter().collect()
 }
+
+/// The code of the README compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
