@@ -2,7 +2,7 @@
 
 use crate::cli::VerifyArguments;
 use crate::{DONE, Environment, Failure, UNSOUND};
-use fairflight_laws::{Check, CheckResult, Effort, catalogue};
+use fairflight_laws::{Check, CheckResult, Effort, Kind, catalogue};
 use fairflight_stats::sidak_level;
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -40,27 +40,14 @@ pub(crate) fn run(
     Ok(if results.iter().any(|result| result.holds == Some(false)) { UNSOUND } else { DONE })
 }
 
-/// The checks whose estimator has this word in its name.
+/// The checks that are about this kind of estimator.
 fn select(all: Vec<Check>, estimator: Option<&str>) -> Result<Vec<Check>, Failure> {
     let Some(name) = estimator else { return Ok(all) };
-    let wanted = normalised(name);
-    let mut names: Vec<String> = all.iter().map(|check| check.estimator.clone()).collect();
-    let selected: Vec<Check> =
-        all.into_iter().filter(|check| normalised(&check.estimator).contains(&wanted)).collect();
-    if selected.is_empty() {
-        names.sort_unstable();
-        names.dedup();
-        return Err(Failure::refused(format!(
-            "--estimator: no check of {name:?}; there are: {}",
-            names.join(", ")
-        )));
-    }
-    Ok(selected)
-}
-
-/// `double_particle`, `double particle` and `Double-particle` are the same name.
-fn normalised(name: &str) -> String {
-    name.to_lowercase().replace(['_', '-'], " ")
+    let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == name) else {
+        let names = Kind::ALL.map(Kind::name).join(", ");
+        return Err(Failure::refused(format!("--estimator: must be one of {names}, found {name}")));
+    };
+    Ok(all.into_iter().filter(|check| check.kinds.contains(&kind)).collect())
 }
 
 fn table(

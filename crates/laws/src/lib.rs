@@ -13,6 +13,7 @@ mod batch;
 mod catalogue;
 mod dense;
 mod hard_cases;
+mod kind;
 mod result;
 mod run;
 mod truth;
@@ -27,6 +28,7 @@ pub use batch::{BATCH, NotFinite, batch_count, batch_moments, batch_size, draw_b
 pub use catalogue::{Check, Effort, Law, catalogue};
 pub use dense::DenseLattice;
 pub use hard_cases::{HardCase, Outcome, hard_cases};
+pub use kind::Kind;
 pub use result::CheckResult;
 pub use run::Run;
 pub use transmittance::{Evidence, Expectation, Refusal};

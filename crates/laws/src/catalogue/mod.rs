@@ -6,7 +6,7 @@ mod media;
 mod single_particle;
 mod specimen;
 
-use crate::{CheckResult, Run, hard_cases, twins};
+use crate::{CheckResult, Kind, Run, hard_cases, twins};
 use fairflight_sources::derive_seed;
 
 /// Which law a check is about.
@@ -43,6 +43,8 @@ pub struct Check {
     pub law: Law,
     /// The estimator or model, in words.
     pub estimator: String,
+    /// The kinds of estimator that it is about; none for a check of media or rays alone.
+    pub kinds: Vec<Kind>,
     /// The medium, in words.
     pub medium: String,
     quick_samples: u64,
@@ -58,10 +60,12 @@ impl Check {
         quick_samples: u64,
         function: impl Fn(Run) -> CheckResult + Send + Sync + 'static,
     ) -> Self {
+        let (id, estimator) = (id.into(), estimator.into());
         Self {
-            id: id.into(),
+            kinds: Kind::named_in(&estimator),
+            id,
             law,
-            estimator: estimator.into(),
+            estimator,
             medium: medium.into(),
             quick_samples,
             function: Box::new(function),
@@ -108,7 +112,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(media::on_every_medium());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
-        Check::new(id, Law::WrongTwin, twin.mistake, twin.profile, samples, move |run| {
+        Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {
             let rejection = twin.run(run);
             CheckResult {
                 holds: Some(rejection.rejected),

@@ -96,6 +96,7 @@ pub(super) fn twins() -> Vec<Twin> {
     vec![
         // r = 4/3: E = exp(σ_samp L (|1 − r| − 1)) = exp(−1) for exp(−2); Var/T² = exp(8/3) − 1 = 13.4.
         Twin::new(
+            "double particle",
             "absolute_weight",
             "weight |1 − r| for 1 − r: the sign of E_tran lost (as in the extracted SimulateParticle, errata)",
             "sigma_t 1, length 2, sigma_samp 3/4",
@@ -104,6 +105,7 @@ pub(super) fn twins() -> Vec<Twin> {
         ),
         // E = exp(−σ_samp L) where r > 1: exp(−1.5) for exp(−2).
         Twin::new(
+            "double particle",
             "clamped_weight",
             "weight max(0, 1 − r): a negative weight clamped (renderers that take sigma_samp for a majorant)",
             "sigma_t 1, length 2, sigma_samp 3/4",
@@ -113,6 +115,7 @@ pub(super) fn twins() -> Vec<Twin> {
         // |1 − r| = 1.5 is no probability: the weight is −1 for sure, E = exp(−2 · 0.2) for exp(−0.5). Judged with the
         // moments of the version that is defined there, Var/T² = exp(0.2 · 2.5²) − 1 = 2.49.
         Twin::new(
+            "single particle",
             "terminating_above_its_domain",
             "the terminating version at r = 2.5 > 2/(1 + a): |1 − r| taken for a probability",
             "sigma_t 1, length 0.5, sigma_samp 0.4, albedo 0",
@@ -121,6 +124,7 @@ pub(super) fn twins() -> Vec<Twin> {
         ),
         // E = 1, what a renderer makes of hard case 5, for e; Var/T² = exp(4 · 0.25²) − 1 = 0.284.
         Twin::new(
+            "single particle",
             "terminating_below_its_domain",
             "the terminating version at r < 0: negative extinction ignored (hard case 5: 1.0 for 2.718)",
             "sigma_t −0.5, length 2, sigma_samp 2, albedo 0",
@@ -129,6 +133,7 @@ pub(super) fn twins() -> Vec<Twin> {
         ),
         // a = 0.5, r = 1.25: only walks without a collision survive, E = exp(−1.6) for exp(−2).
         Twin::new(
+            "single particle",
             "stops_below_zero",
             "while E > 0 for while |E| > 0: the walk ends at a negative weight (bars lost in SimulateParticle, errata)",
             "sigma_t 1, length 2, sigma_samp 0.8, albedo 0.5",

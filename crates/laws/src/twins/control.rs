@@ -63,6 +63,7 @@ pub(super) fn twins() -> Vec<Twin> {
     vec![
         // E = T / T_main = e^{0.5·4} T on the steps below.
         Twin::new(
+            "double particle",
             "without_the_control_s_transmittance",
             "T = 1 for T = T_main(S): the control subtracted but not multiplied",
             "sigma_t 1, 0.2, 0.6 (lengths 1, 1.5, 1.5), control 0.5, sigma_samp 2",
@@ -80,6 +81,7 @@ pub(super) fn twins() -> Vec<Twin> {
         ),
         // Every r is zero: the estimate is exp(−τ of the fit), wherever the points fell. The z is measured.
         Twin::new(
+            "double particle, explorers",
             "fits_its_own_walk",
             "the interaction points of the walk used as its explorer points (warned of in errata)",
             "a tent from 0 over 2 to 0, length 3, sigma_samp 2",

@@ -67,7 +67,7 @@ impl<F: Majorant> Majorant for Behind<'_, F> {
 
 fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> f64) -> Twin {
     let profile = "sigma_t 1, 0.1 (length 1 each), majorant 1, 4 splits";
-    Twin::new(id, mistake, profile, (50_000, Evident::Mean { z }), move |run| {
+    Twin::new("line integral", id, mistake, profile, (50_000, Evident::Mean { z }), move |run| {
         let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.1]).expect(LAWFUL);
         let right = LineIntegral::new(4).expect(LAWFUL);
         let theory = theory_of(&field, &right, &[]);

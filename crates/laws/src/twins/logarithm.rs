@@ -22,6 +22,7 @@ impl<S: UniformSource> UniformSource for Printed<S> {
 /// All twins of this file.
 pub(super) fn twins() -> Vec<Twin> {
     vec![Twin::new(
+        "woodcock",
         "logarithm_of_zero",
         "−log(rand()) for −ln(1 − rand()): infinite at the variate 0 (raab-2008 algorithm 1 as printed)",
         "sigma_t = sigma_samp = 1, length 1, variate 0",

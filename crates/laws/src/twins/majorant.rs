@@ -30,6 +30,7 @@ pub(super) fn twins() -> Vec<Twin> {
     vec![
         // E = exp(−∫ min(σ_t, majorant)) = exp(−1.6) for exp(−2): (0.2019 − 0.1353)/sqrt(0.1353·0.8647/N).
         Twin::new(
+            "woodcock",
             "majorant_too_low",
             "Woodcock tracking through a majorant below the maximum (a renderer's camera path: 0.368 in hard case 3)",
             "sigma_t 0.5, 1.5 (length 1 each), majorant 1.1",
@@ -50,6 +51,7 @@ pub(super) fn twins() -> Vec<Twin> {
             },
         ),
         Twin::new(
+            "woodcock",
             "collides_in_empty_space",
             "ratio ≥ rand() for rand() < ratio (raab-2008 algorithm 1 as printed)",
             "sigma_t 0, majorant 1, variate 0",

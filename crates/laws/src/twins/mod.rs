@@ -55,6 +55,8 @@ pub enum Evident {
 pub struct Twin {
     /// Unique.
     pub id: &'static str,
+    /// The estimator that it is a twin of, in words.
+    pub of: &'static str,
     /// The wrong line, and who wrote it.
     pub mistake: &'static str,
     /// Where it is tried.
@@ -68,13 +70,14 @@ pub struct Twin {
 
 impl Twin {
     fn new(
+        of: &'static str,
         id: &'static str,
         mistake: &'static str,
         profile: &'static str,
         (samples, evident): (u64, Evident),
         function: impl Fn(Run) -> Rejection + Send + Sync + 'static,
     ) -> Self {
-        Self { id, mistake, profile, samples, evident, function: Box::new(function) }
+        Self { of, id, mistake, profile, samples, evident, function: Box::new(function) }
     }
 
     /// Tries the twin.

@@ -47,6 +47,7 @@ pub(super) fn twins() -> Vec<Twin> {
     vec![
         // Rate 2 and 0.5, mean 1.25: E = exp(−(1·2 + 0.25·0.5)/1.25) = exp(−1.7) for exp(−1.25).
         Twin::new(
+            "double particle",
             "divides_by_the_mean_rate",
             "r = sigma_diff over the mean of a piecewise sigma_samp, for its value at s",
             "sigma_t 1, 0.25 (length 1 each), sigma_samp 2, 0.5",
@@ -59,6 +60,7 @@ pub(super) fn twins() -> Vec<Twin> {
         ),
         // E = exp(−1) for exp(−1.25); its variance is that of the first cell, exp(0.5) − 1.
         Twin::new(
+            "double particle",
             "rate_with_a_hole",
             "sigma_samp = 0 where sigma_t is not: silently no collision there",
             "sigma_t 1, 0.25 (length 1 each), sigma_samp 2, 0",

@@ -29,6 +29,7 @@ fn of_the_whole_extinction(
 /// All twins of this file.
 pub(super) fn twins() -> Vec<Twin> {
     vec![Twin::new(
+        "double particle",
         "variance_of_the_whole_extinction",
         "eq. 16 with sigma_t for sigma_diff: the control forgotten in the variance",
         "sigma_t 1, 0.5 (length 1 each), control 0.5, sigma_samp 8",

@@ -1,0 +1,83 @@
+//! The estimators by the names that an experiment gives them.
+
+/// An estimator of an experiment, whatever its parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// 1 if a flight escapes, else 0.
+    Woodcock,
+    /// Tracking with the double particle model.
+    DoubleParticle,
+    /// Tracking with the single particle model.
+    SingleParticle,
+    /// raab-2008 algorithm 2.
+    LineIntegral,
+    /// The biased baseline.
+    RayMarching,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Woodcock, Self::DoubleParticle, Self::SingleParticle, Self::LineIntegral, Self::RayMarching];
+
+    /// The name in an experiment.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Woodcock => "woodcock",
+            Self::DoubleParticle => "double_particle",
+            Self::SingleParticle => "single_particle",
+            Self::LineIntegral => "line_integral",
+            Self::RayMarching => "ray_marching",
+        }
+    }
+
+    /// The kinds that a check in words is about: those named in it, the versions of the single particle model, and the
+    /// double particle model where it goes by its special cases.
+    #[must_use]
+    pub(crate) fn named_in(words: &str) -> Vec<Self> {
+        let words = words.to_lowercase().replace(['_', '-'], " ");
+        if words.contains("every sampler") {
+            return Self::ALL.to_vec();
+        }
+        let names = |kind: Self| -> &[&str] {
+            match kind {
+                Self::Woodcock => &["woodcock"],
+                Self::DoubleParticle => &[
+                    "double particle",
+                    "ratio tracking",
+                    "below the extinction",
+                    "residual",
+                    "difference",
+                    "piecewise",
+                    "explorers",
+                    "control",
+                ],
+                Self::SingleParticle => &["single particle", "terminating", "adaptive"],
+                Self::LineIntegral => &["line integral"],
+                Self::RayMarching => &["ray marching"],
+            }
+        };
+        // A version of the single particle model is one also "below the extinction".
+        let single = names(Self::SingleParticle).iter().any(|name| words.contains(name));
+        Self::ALL
+            .into_iter()
+            .filter(|&kind| !(single && kind == Self::DoubleParticle && !words.contains("double particle")))
+            .filter(|&kind| names(kind).iter().any(|name| words.contains(name)))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Kind;
+
+    #[test]
+    fn words_name_kinds() {
+        assert_eq!(Kind::named_in("ratio_tracking"), [Kind::DoubleParticle]);
+        assert_eq!(Kind::named_in("adaptive albedo 0.5 below the extinction"), [Kind::SingleParticle]);
+        assert_eq!(Kind::named_in("woodcock, line integral"), [Kind::Woodcock, Kind::LineIntegral]);
+        assert_eq!(Kind::named_in("every sampler").len(), 5);
+        assert!(Kind::named_in("clipped ray").is_empty());
+    }
+}
