@@ -59,58 +59,37 @@ pub trait MediumBreakpoints: Medium {
     fn line_breakpoints(&self, local: &Line, length: f64) -> Vec<f64>;
 }
 
-impl<M: Medium + ?Sized> Medium for &M {
-    fn local(&self, line: Line) -> Line {
-        (**self).local(line)
-    }
-    #[inline]
-    fn sigma_t_local(&self, point: DVec3) -> f64 {
-        (**self).sigma_t_local(point)
-    }
-    fn upper_bound(&self) -> Option<f64> {
-        (**self).upper_bound()
-    }
-    fn lower_bound(&self) -> Option<f64> {
-        (**self).lower_bound()
-    }
+/// A medium behind a pointer is the medium.
+macro_rules! behind_a_pointer {
+    ($($pointer:ty),*) => {$(
+        impl<M: Medium + ?Sized> Medium for $pointer {
+            fn local(&self, line: Line) -> Line {
+                (**self).local(line)
+            }
+            #[inline]
+            fn sigma_t_local(&self, point: DVec3) -> f64 {
+                (**self).sigma_t_local(point)
+            }
+            fn upper_bound(&self) -> Option<f64> {
+                (**self).upper_bound()
+            }
+            fn lower_bound(&self) -> Option<f64> {
+                (**self).lower_bound()
+            }
+        }
+
+        impl<M: LineThickness + ?Sized> LineThickness for $pointer {
+            fn line_thickness(&self, local: &Line, from: f64, to: f64) -> f64 {
+                (**self).line_thickness(local, from, to)
+            }
+        }
+
+        impl<M: MediumBreakpoints + ?Sized> MediumBreakpoints for $pointer {
+            fn line_breakpoints(&self, local: &Line, length: f64) -> Vec<f64> {
+                (**self).line_breakpoints(local, length)
+            }
+        }
+    )*};
 }
 
-impl<M: LineThickness + ?Sized> LineThickness for &M {
-    fn line_thickness(&self, local: &Line, from: f64, to: f64) -> f64 {
-        (**self).line_thickness(local, from, to)
-    }
-}
-
-impl<M: MediumBreakpoints + ?Sized> MediumBreakpoints for &M {
-    fn line_breakpoints(&self, local: &Line, length: f64) -> Vec<f64> {
-        (**self).line_breakpoints(local, length)
-    }
-}
-
-impl<M: Medium + ?Sized> Medium for Arc<M> {
-    fn local(&self, line: Line) -> Line {
-        (**self).local(line)
-    }
-    #[inline]
-    fn sigma_t_local(&self, point: DVec3) -> f64 {
-        (**self).sigma_t_local(point)
-    }
-    fn upper_bound(&self) -> Option<f64> {
-        (**self).upper_bound()
-    }
-    fn lower_bound(&self) -> Option<f64> {
-        (**self).lower_bound()
-    }
-}
-
-impl<M: LineThickness + ?Sized> LineThickness for Arc<M> {
-    fn line_thickness(&self, local: &Line, from: f64, to: f64) -> f64 {
-        (**self).line_thickness(local, from, to)
-    }
-}
-
-impl<M: MediumBreakpoints + ?Sized> MediumBreakpoints for Arc<M> {
-    fn line_breakpoints(&self, local: &Line, length: f64) -> Vec<f64> {
-        (**self).line_breakpoints(local, length)
-    }
-}
+behind_a_pointer!(&M, Arc<M>);

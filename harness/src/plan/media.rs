@@ -2,7 +2,7 @@
 
 use super::VoxelLattice;
 use crate::Failure;
-use crate::spec::{BoundsSpec, MediumKind, MediumSpec};
+use crate::spec::{MediumKind, MediumSpec};
 use fairflight_media::{AnalyticCosine, Bounds, ExpressionMedium, Homogeneous, Perlin, Voxels};
 use fairflight_volumes::{Affine, VoxelGrid, read_float_grid};
 use glam::{DAffine3, DVec3};
@@ -40,7 +40,7 @@ impl MediumLibrary {
     /// # Errors
     /// If a file cannot be read, or a parameter is not lawful.
     pub fn build(&self, spec: &MediumSpec) -> Result<(AnyMedium, Bounds), Failure> {
-        let given = spec.bounds.map(|bounds| build_bounds(&bounds)).transpose()?;
+        let given = spec.bounds;
         // A medium without bounds of its own was given some: the spec saw to it.
         let unbounded = || Failure::refused("profile.medium.bounds: this key is missing");
         Ok(match &spec.kind {
@@ -91,14 +91,6 @@ impl MediumLibrary {
 
 fn in_medium(error: impl std::fmt::Display) -> Failure {
     Failure::refused(format!("profile.medium: {error}"))
-}
-
-fn build_bounds(spec: &BoundsSpec) -> Result<Bounds, Failure> {
-    match *spec {
-        BoundsSpec::Sphere { center, radius } => Bounds::sphere(center, radius),
-        BoundsSpec::Box { min, max } => Bounds::aligned_box(min, max),
-    }
-    .map_err(|error| Failure::refused(format!("profile.medium.bounds: {error}")))
 }
 
 /// The world box of the active voxels grown by one voxel; `None` if nothing is active.

@@ -3,8 +3,7 @@
 use super::Node;
 use super::node::Object;
 use crate::Failure;
-use fairflight_media::PerlinParameters;
-use glam::DVec3;
+use fairflight_media::{Bounds, PerlinParameters};
 use std::path::PathBuf;
 
 /// A medium with its bounds, as given.
@@ -13,7 +12,7 @@ pub struct MediumSpec {
     /// What fills the bounds.
     pub kind: MediumKind,
     /// Where the medium is; without it, the kind's own.
-    pub bounds: Option<BoundsSpec>,
+    pub bounds: Option<Bounds>,
 }
 
 /// What fills the bounds.
@@ -49,25 +48,6 @@ pub enum MediumKind {
     },
 }
 
-/// Where a medium is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BoundsSpec {
-    /// A ball.
-    Sphere {
-        /// Its center.
-        center: DVec3,
-        /// Its radius.
-        radius: f64,
-    },
-    /// An axis-aligned box.
-    Box {
-        /// Its lower corner.
-        min: DVec3,
-        /// Its upper corner.
-        max: DVec3,
-    },
-}
-
 impl MediumSpec {
     /// Reads `medium`.
     ///
@@ -76,7 +56,7 @@ impl MediumSpec {
     pub fn read(node: &Node<'_>) -> Result<Self, Failure> {
         let object = node.object()?;
         let kind = MediumKind::read(&object)?;
-        let bounds = object.optional("bounds").map(|node| BoundsSpec::read(&node)).transpose()?;
+        let bounds = object.optional("bounds").map(|node| read_bounds(&node)).transpose()?;
         let has_own = matches!(kind, MediumKind::AnalyticCosine { .. } | MediumKind::Vdb { .. });
         if bounds.is_none() && !has_own {
             // Names the missing key.
@@ -130,34 +110,28 @@ fn read_perlin(object: &Object<'_>) -> Result<PerlinParameters, Failure> {
     })
 }
 
-impl BoundsSpec {
-    fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        let object = node.object()?;
-        let bounds = match (object.optional("sphere"), object.optional("box")) {
-            (Some(sphere), None) => {
-                let object = sphere.object()?;
-                let bounds = Self::Sphere {
-                    center: object.required("center")?.vector()?,
-                    radius: object.required("radius")?.non_negative()?,
-                };
-                object.finish()?;
-                bounds
+fn read_bounds(node: &Node<'_>) -> Result<Bounds, Failure> {
+    let object = node.object()?;
+    let bounds = match (object.optional("sphere"), object.optional("box")) {
+        (Some(sphere), None) => {
+            let object = sphere.object()?;
+            let center = object.required("center")?.vector()?;
+            let radius = object.required("radius")?.non_negative()?;
+            object.finish()?;
+            Bounds::sphere(center, radius).map_err(|error| sphere.reject(error))?
+        }
+        (None, Some(cuboid)) => {
+            let object = cuboid.object()?;
+            let (min, max) = (object.required("min")?, object.required("max")?);
+            let (low, high) = (min.vector()?, max.vector()?);
+            if !low.cmple(high).all() {
+                return Err(max.refuse("must not be below min in any coordinate"));
             }
-            (None, Some(cuboid)) => {
-                let object = cuboid.object()?;
-                let (min, max) = (object.required("min")?, object.required("max")?);
-                let bounds = Self::Box { min: min.vector()?, max: max.vector()? };
-                if let Self::Box { min: low, max: high } = bounds
-                    && !low.cmple(high).all()
-                {
-                    return Err(max.refuse("must not be below min in any coordinate"));
-                }
-                object.finish()?;
-                bounds
-            }
-            _ => return Err(node.refuse("must hold either sphere or box")),
-        };
-        object.finish()?;
-        Ok(bounds)
-    }
+            object.finish()?;
+            Bounds::aligned_box(low, high).map_err(|error| cuboid.reject(error))?
+        }
+        _ => return Err(node.refuse("must hold either sphere or box")),
+    };
+    object.finish()?;
+    Ok(bounds)
 }

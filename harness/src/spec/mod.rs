@@ -11,6 +11,6 @@ mod profile;
 
 pub use estimator::{ControlSpec, EstimatorSpec, SamplingSpec};
 pub use experiment::{Experiment, Overrides, Request, Sweep};
-pub use medium::{BoundsSpec, MediumKind, MediumSpec};
+pub use medium::{MediumKind, MediumSpec};
 pub use node::Node;
 pub use profile::ProfileSpec;
