@@ -56,6 +56,22 @@ pub(crate) struct ReportArguments {
     pub threads: Option<u16>,
 }
 
+/// What the command line gives for a report that names nothing.
+impl Default for ReportArguments {
+    fn default() -> Self {
+        Self {
+            name: "standard".to_owned(),
+            quick: false,
+            vdb: None,
+            grid: None,
+            scale: 1.0,
+            out: None,
+            seed: 1,
+            threads: None,
+        }
+    }
+}
+
 /// Arguments of `estimate`.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct EstimateArguments {

@@ -9,7 +9,7 @@ use crate::reference::{Prediction, Truth, explain, predict};
 use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, ReferenceResult};
 use fairflight_laws::Unit;
 use fairflight_media::{Tolerance, Violation};
-use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, judge};
+use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, Verdict, judge};
 use fairflight_transmittance::Theory;
 
 /// Runs a plan.
@@ -66,6 +66,38 @@ impl EstimatorJob for Draw<'_> {
     }
 }
 
+/// What was measured against what is known.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The unit of both: T where that can be divided by.
+    pub unit: Unit,
+    /// The closed moments of one estimate.
+    pub closed: ClosedMoments,
+    /// Whether mean and variance agree with them, at the false alarm that was asked for.
+    pub verdict: Verdict,
+}
+
+/// Judges a measurement, with a false alarm of `alpha`.
+#[must_use]
+pub fn compare(
+    plan: &Plan,
+    truth: &Truth,
+    prediction: &Prediction,
+    measurement: &Measurement,
+    alpha: f64,
+) -> Comparison {
+    let unit = Unit::of(truth.optical_thickness);
+    let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
+    let reference = Reference {
+        mean: closed.mean,
+        error: truth.error() * unit.scale(),
+        moments: Some(closed),
+        scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
+    };
+    let verdict = judge(&measurement.moments.scaled(unit.scale()), &reference, alpha);
+    Comparison { unit, closed, verdict }
+}
+
 /// Puts what was measured beside what is known.
 #[must_use]
 pub fn analyse(
@@ -80,15 +112,7 @@ pub fn analyse(
     let transmittance = truth.transmittance();
     let theory = &prediction.theory;
 
-    let unit = Unit::of(truth.optical_thickness);
-    let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
-    let reference = Reference {
-        mean: closed.mean,
-        error: truth.error() * unit.scale(),
-        moments: Some(closed),
-        scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
-    };
-    let verdict = judge(&moments.scaled(unit.scale()), &reference, DEFAULT_ALPHA);
+    let Comparison { unit, closed, verdict } = compare(plan, truth, prediction, measurement, DEFAULT_ALPHA);
 
     let known = variance_is_known(theory);
     let scale = |value: f64, power: i32| value / unit.scale().powi(power);

@@ -25,7 +25,7 @@ pub use environment::{Environment, Terminal};
 pub use failure::{DONE, Failure, NOT_WRITTEN, REFUSED, UNSOUND};
 
 use clap::Parser;
-use cli::{Cli, Command};
+use cli::{Cli, Command, ReportArguments};
 use std::ffi::OsString;
 use std::io::{Read, Write};
 
@@ -49,7 +49,8 @@ pub fn run(
         Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
         Some(Command::List) => list::run(stdout),
-        _ => Ok(DONE),
+        Some(Command::Report(arguments)) => report::command::run(&arguments, &environment, stderr),
+        None => report::command::run(&ReportArguments::default(), &environment, stderr),
     };
     match outcome {
         Ok(code) => code,

@@ -45,13 +45,15 @@ impl Plan {
     /// If a file cannot be read, or the parts do not fit.
     pub fn of(experiment: &Experiment, library: &MediumLibrary) -> Result<Self, Failure> {
         let profile = AnyProfile::build(&experiment.profile, library)?;
-        let estimator = AnyEstimator::build(&experiment.estimator, &profile)?;
-        Ok(Self {
-            profile,
-            estimator,
-            spec: experiment.estimator.clone(),
-            samples: experiment.samples,
-            seed: experiment.seed,
-        })
+        Self::on(profile, experiment.estimator.clone(), experiment.samples, experiment.seed)
+    }
+
+    /// Prepares an estimator for a profile that is already built.
+    ///
+    /// # Errors
+    /// If the two do not fit.
+    pub fn on(profile: AnyProfile, spec: EstimatorSpec, samples: u64, seed: u64) -> Result<Self, Failure> {
+        let estimator = AnyEstimator::build(&spec, &profile)?;
+        Ok(Self { profile, estimator, spec, samples, seed })
     }
 }

@@ -92,6 +92,14 @@ pub enum Series {
     JitteredRayMarching,
 }
 
+impl Series {
+    /// A biased baseline: it is shown, and does not compete.
+    #[must_use]
+    pub fn is_baseline(self) -> bool {
+        matches!(self, Self::RayMarching | Self::JitteredRayMarching)
+    }
+}
+
 /// One estimator against the sampling extinction.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepCurve {

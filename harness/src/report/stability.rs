@@ -11,7 +11,7 @@ const FAMILY_LEVEL: f64 = 1e-6;
 
 /// Runs every hard case that concerns transmittance.
 #[must_use]
-pub fn stability(seed: u64) -> Vec<StabilityRow> {
+pub(super) fn stability(seed: u64) -> Vec<StabilityRow> {
     let cases = hard_cases();
     let alpha = sidak_level(FAMILY_LEVEL, cases.len());
     cases

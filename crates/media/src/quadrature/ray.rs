@@ -11,6 +11,14 @@ pub struct RayQuadrature<F> {
     panels: Panels<f64>,
 }
 
+impl<F> RayQuadrature<F> {
+    /// The same panels and values under another type of the same profile: σ_t is not evaluated again. With a bound put on
+    /// a field, or the field taken away to be put back.
+    pub fn with_field<G>(&self, field: G) -> RayQuadrature<G> {
+        RayQuadrature { field, panels: self.panels.clone() }
+    }
+}
+
 impl<F: Breakpoints> RayQuadrature<F> {
     /// Panels between the field's breakpoints, and at `also`: the breakpoints of a control or of a sampling extinction.
     pub fn new(field: F, also: &[f64]) -> Self {

@@ -1,0 +1,84 @@
+//! The ledger: claims of szirmay-kalos-2017 on transmittance, measured again. A claim that fails is as valuable as one that
+//! holds; the criterion of each verdict stands in its file.
+
+mod band;
+mod case;
+mod control;
+mod formula;
+mod images;
+mod majorant;
+mod versions;
+
+use super::{Run, Study, Subject};
+use crate::Failure;
+use crate::report::result::{Claim, ClaimVerdict, ImageStudy, MediumReport};
+use rayon::prelude::*;
+
+/// What a claim is judged from.
+#[derive(Clone, Copy)]
+struct Evidence<'a> {
+    run: &'a Run<'a>,
+    subjects: &'a [Subject],
+    media: &'a [MediumReport],
+    images: &'a [ImageStudy],
+}
+
+/// Standard errors that a measurement may be off before it counts against a claim: one in 15 000.
+const SIGMAS: f64 = 4.0;
+
+type Judge = fn(&Evidence<'_>) -> Result<Claim, Failure>;
+
+const JUDGES: [Judge; 7] =
+    [formula::s1, majorant::s2, majorant::s3, versions::s4, images::s7, control::s8, band::s10];
+
+/// How much [`ledger`] reports as progress.
+pub(super) fn steps() -> u64 {
+    JUDGES.len() as u64
+}
+
+/// The claims, in the order of the project's ledger.
+pub(super) fn ledger(
+    run: &Run<'_>,
+    subjects: &[Subject],
+    media: &[MediumReport],
+    images: &[ImageStudy],
+) -> Result<Vec<Claim>, Failure> {
+    let evidence = Evidence { run, subjects, media, images };
+    let claims: Vec<Result<Claim, Failure>> = JUDGES
+        .par_iter()
+        .map(|judge| {
+            let claim = judge(&evidence);
+            run.advance();
+            claim
+        })
+        .collect();
+    claims.into_iter().collect()
+}
+
+impl Evidence<'_> {
+    /// A seed of its own for each measurement of each claim.
+    fn seed(&self, claim: u64, measurement: u64) -> u64 {
+        self.run.seed(self.analytic(), Study::Claims, (claim << 16) + measurement)
+    }
+
+    /// The analytic medium is always studied, and first.
+    fn analytic(&self) -> &Subject {
+        &self.subjects[0]
+    }
+}
+
+fn claim(id: &str, words: &str, measured: String, verdict: ClaimVerdict, comment: &str) -> Claim {
+    let place = match id {
+        "S7" => "fig. 9, 10",
+        "S10" => "fig. 8",
+        _ => "section 3.4",
+    };
+    Claim {
+        id: id.to_owned(),
+        claim: words.to_owned(),
+        source: format!("szirmay-kalos-2017 {place}"),
+        measured,
+        verdict,
+        comment: comment.to_owned(),
+    }
+}

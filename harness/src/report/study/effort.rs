@@ -1,0 +1,111 @@
+//! How much is measured.
+
+/// Numbers of points and CPU seconds. All of them are inputs: no sample size depends on a clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Effort {
+    /// Points of a sweep's curve; odd, so that the majorant itself is one.
+    pub(super) sweep_points: usize,
+    /// Every which of them is measured, and how many at either end are not: the far ends cost most and tell least.
+    pub(super) measured_every: usize,
+    pub(super) unmeasured_ends: usize,
+    /// CPU seconds of one measured point, about.
+    pub(super) point_seconds: f64,
+    /// CPU seconds of one whose variance can be tested for that.
+    pub(super) testable_seconds: f64,
+    /// CPU seconds of one point of a convergence curve, about.
+    pub(super) convergence_seconds: f64,
+    /// The greatest number of steps of ray marching.
+    pub(super) most_steps: u32,
+    /// Pixels along an edge of an image.
+    pub(super) resolution: usize,
+    /// CPU seconds of one measurement that a claim asks for.
+    pub(super) claim_seconds: f64,
+}
+
+impl Effort {
+    pub(super) fn of(quick: bool) -> Self {
+        if quick {
+            Self {
+                sweep_points: 17,
+                measured_every: 4,
+                unmeasured_ends: 4,
+                point_seconds: 0.004,
+                testable_seconds: 0.02,
+                convergence_seconds: 0.015,
+                most_steps: 256,
+                resolution: 32,
+                claim_seconds: 0.02,
+            }
+        } else {
+            Self {
+                sweep_points: 49,
+                measured_every: 6,
+                unmeasured_ends: 0,
+                point_seconds: 0.025,
+                testable_seconds: 0.3,
+                convergence_seconds: 0.1,
+                most_steps: 4096,
+                resolution: 96,
+                claim_seconds: 0.15,
+            }
+        }
+    }
+}
+
+/// The fewest and the most samples of a point: a whole batch, and what is counted of a run.
+const SAMPLES: (u32, u32) = (12, 20);
+
+impl Effort {
+    /// Whether the i-th point of a sweep is measured.
+    pub(super) fn measures(&self, i: usize) -> bool {
+        let inside = self.unmeasured_ends..self.sweep_points - self.unmeasured_ends;
+        inside.contains(&i) && i.is_multiple_of(self.measured_every)
+    }
+
+    /// Samples of a point, if one costs `nanoseconds` and the variance can be tested from `needed` on: these where they are
+    /// affordable; else fewer, as a mean and a hollow mark are all they can give.
+    pub(super) fn samples(&self, nanoseconds: f64, needed: f64) -> u64 {
+        samples_to_test(self.point_seconds, self.testable_seconds, nanoseconds, needed)
+    }
+}
+
+/// The samples that fit into `seconds`, or the `needed` ones if these fit into `at_most` seconds.
+pub(super) fn samples_to_test(seconds: f64, at_most: f64, nanoseconds: f64, needed: f64) -> u64 {
+    let usual = samples_within(seconds, nanoseconds);
+    if needed <= samples_within(at_most, nanoseconds) as f64 {
+        usual.max((needed.ceil() as u64).next_power_of_two())
+    } else {
+        usual
+    }
+}
+
+/// The power of two of samples that fits into `seconds` if one costs `nanoseconds`; each is drawn twice, once to be timed
+/// and once to count its look-ups.
+pub(super) fn samples_within(seconds: f64, nanoseconds: f64) -> u64 {
+    // Drawing variates and logarithms costs about as much as a cheap look-up, whatever the field.
+    let each = 2.0 * (nanoseconds + 20.0);
+    let exponent = (seconds * 1e9 / each).log2().floor();
+    1 << (exponent.max(0.0) as u32).clamp(SAMPLES.0, SAMPLES.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_powers_of_two_within_the_budget() {
+        for nanoseconds in [1.0, 600.0, 8e3, 3e5] {
+            let n = samples_within(0.1, nanoseconds);
+            assert!(n.is_power_of_two() && (4096..=1 << 20).contains(&n));
+            assert!(n == 4096 || n as f64 * 2.0 * nanoseconds <= 1e8);
+        }
+    }
+
+    #[test]
+    fn a_test_is_paid_for_where_it_is_affordable() {
+        let effort = Effort { point_seconds: 0.01, testable_seconds: 0.1, ..Effort::of(false) };
+        assert_eq!(effort.samples(980.0, f64::INFINITY), 4096);
+        assert_eq!(effort.samples(980.0, 30_000.0), 32_768);
+        assert_eq!(effort.samples(980.0, 60_000.0), 4096);
+    }
+}

@@ -1,0 +1,92 @@
+//! The estimators that are swept: all parameters but the sampling extinction.
+
+use super::Subject;
+use crate::report::result::Series;
+use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
+use fairflight_collision::{Albedo, Version};
+use fairflight_transmittance::Offset;
+
+/// Explorer points of the controls.
+pub(super) const EXPLORERS: usize = 16;
+/// Flights per set of the line integral.
+pub(super) const SPLITS: u32 = 8;
+/// The albedos of the single particle model: it enters the variance of transmittance too.
+const ALBEDOS: [f64; 3] = [0.0, 0.5, 0.9];
+
+/// One estimator with a sampling extinction to be chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub(super) series: Series,
+    pub(super) albedo: Option<Albedo>,
+}
+
+/// All swept estimators, in the order of the report.
+pub(super) fn all() -> Vec<Entry> {
+    let plain = |series| Entry { series, albedo: None };
+    let mut entries = vec![
+        plain(Series::Woodcock),
+        plain(Series::DoubleParticle),
+        plain(Series::DoubleParticleMean),
+        plain(Series::DoubleParticleExplorers),
+    ];
+    for series in [Series::Terminating, Series::NonTerminating, Series::Adaptive] {
+        let albedos = ALBEDOS.into_iter().filter_map(|albedo| Albedo::new(albedo).ok());
+        entries.extend(albedos.map(|albedo| Entry { series, albedo: Some(albedo) }));
+    }
+    entries.extend([
+        plain(Series::LineIntegral),
+        plain(Series::RayMarching),
+        plain(Series::JitteredRayMarching),
+    ]);
+    entries
+}
+
+impl Entry {
+    /// The estimator at one sampling extinction \[1/length\]. Ray marching takes as many steps as tracking takes look-ups.
+    pub(super) fn at(&self, subject: &Subject, sigma_samp: f64) -> EstimatorSpec {
+        let sampling = SamplingSpec::Constant(sigma_samp);
+        let double = |control| EstimatorSpec::DoubleParticle { sampling: sampling.clone(), control };
+        let single = |version| EstimatorSpec::SingleParticle {
+            version,
+            albedo: self.albedo.unwrap_or_default(),
+            sampling: sampling.clone(),
+            control: ControlSpec::None,
+        };
+        let marching = |offset| {
+            let steps = (sigma_samp * subject.facts.length).round().max(1.0) as u32;
+            EstimatorSpec::RayMarching { steps, offset }
+        };
+        match self.series {
+            Series::Woodcock => EstimatorSpec::Woodcock { majorant: sigma_samp },
+            Series::DoubleParticle => double(ControlSpec::None),
+            Series::DoubleParticleMean => double(ControlSpec::Constant(subject.facts.mean)),
+            Series::DoubleParticleExplorers => double(ControlSpec::Explorers { count: EXPLORERS }),
+            Series::Terminating => single(Version::Terminating),
+            Series::NonTerminating => single(Version::NonTerminating),
+            Series::Adaptive => single(Version::Adaptive),
+            Series::LineIntegral => EstimatorSpec::LineIntegral { majorant: sigma_samp, splits: SPLITS },
+            Series::RayMarching => marching(Offset::Fixed),
+            Series::JitteredRayMarching => marching(Offset::Jittered),
+        }
+    }
+
+    /// The parameters in words.
+    pub(super) fn parameters(&self) -> String {
+        match (self.series, self.albedo) {
+            (Series::Woodcock, _) => "majorant = sigma_samp".to_owned(),
+            (Series::DoubleParticle, _) => "no control".to_owned(),
+            (Series::DoubleParticleMean, _) => "control = mean of the ray (an oracle)".to_owned(),
+            (Series::DoubleParticleExplorers, _) => format!("{EXPLORERS} explorers"),
+            (Series::LineIntegral, _) => format!("{SPLITS} splits, majorant = sigma_samp"),
+            (Series::RayMarching, _) => "midpoints of the steps, biased".to_owned(),
+            (Series::JitteredRayMarching, _) => "one random offset, biased".to_owned(),
+            (_, Some(albedo)) => format!("albedo {albedo}"),
+            (_, None) => String::new(),
+        }
+    }
+
+    /// Whether this is a labelled biased baseline.
+    pub(super) fn is_baseline(&self) -> bool {
+        matches!(self.series, Series::RayMarching | Series::JitteredRayMarching)
+    }
+}

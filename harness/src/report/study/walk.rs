@@ -1,0 +1,89 @@
+//! One walk of the double particle model with explorers, as a transmittance function.
+
+use super::Subject;
+use crate::Failure;
+use crate::plan::{Field, FieldJob, KnownField};
+use fairflight_collision::DoubleParticle;
+use fairflight_media::Constant;
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{Explorers, Tracking, TransmittanceFunction};
+
+/// Explorer points of the walks that are shown one by one (fig. 5 and 8).
+pub(super) const WALK_EXPLORERS: usize = 20;
+
+/// The estimator of szirmay-kalos-2017 section 4.2 with a control through explorers.
+pub(super) type Walker = Tracking<DoubleParticle, Explorers, Constant>;
+
+/// The estimator on the ray of a subject.
+///
+/// # Errors
+/// If σ_samp is not lawful.
+pub(super) fn walker(subject: &Subject, explorers: usize, sigma_samp: f64) -> Result<Walker, Failure> {
+    subject.profile.with(Prepare { explorers, sigma_samp })
+}
+
+struct Prepare {
+    explorers: usize,
+    sigma_samp: f64,
+}
+
+impl FieldJob for Prepare {
+    type Output = Result<Walker, Failure>;
+    fn run<F: KnownField>(self, field: &F) -> Self::Output
+    where
+        for<'a> &'a F: Field,
+    {
+        let control = Explorers::through(field, self.explorers).map_err(Failure::refused)?;
+        let sampling = Constant::new(self.sigma_samp, field.length()).map_err(Failure::refused)?;
+        let model = DoubleParticle { albedo: fairflight_collision::Albedo::default() };
+        Ok(Tracking::new(model, control, sampling))
+    }
+}
+
+/// Evaluates σ_t of a subject's ray at many distances.
+pub(super) struct LookUp<'a>(pub(super) &'a [f64]);
+
+impl FieldJob for LookUp<'_> {
+    type Output = Vec<f64>;
+    fn run<F: KnownField>(self, field: &F) -> Vec<f64>
+    where
+        for<'a> &'a F: Field,
+    {
+        self.0.iter().map(|&s| field.sigma_t(s)).collect()
+    }
+}
+
+/// `walks` walks from one source: interaction points with the weight behind each.
+pub(super) struct Trace<'a, S> {
+    pub(super) walker: &'a Walker,
+    pub(super) walks: usize,
+    pub(super) source: S,
+}
+
+impl<S: UniformSource> FieldJob for Trace<'_, S> {
+    type Output = Vec<Vec<(f64, f64)>>;
+    fn run<F: KnownField>(mut self, field: &F) -> Self::Output
+    where
+        for<'a> &'a F: Field,
+    {
+        (0..self.walks)
+            .map(|_| {
+                let mut walk = Vec::new();
+                TransmittanceFunction::<F>::trace(self.walker, field, &mut self.source, &mut walk);
+                walk
+            })
+            .collect()
+    }
+}
+
+/// The weight of a walk at `s`, without the control: that behind its last interaction point at or before `s`.
+pub(super) fn weight_at(walk: &[(f64, f64)], s: f64) -> f64 {
+    let before = walk.partition_point(|(point, _)| *point <= s);
+    if before == 0 { 1.0 } else { walk[before - 1].1 }
+}
+
+/// `count` equidistant distances from 0 to `length`, both included.
+pub(super) fn distances(length: f64, count: usize) -> Vec<f64> {
+    let last = count - 1;
+    (0..count).map(|i| if i == last { length } else { length * i as f64 / last as f64 }).collect()
+}

@@ -1,0 +1,94 @@
+//! Grey for transmittance, a diverging map for its error.
+//!
+//! The diverging map is built in Oklab (Ottosson 2020): lightness falls and chroma grows equally fast on both sides of zero, blue
+//! for too dark, orange for too bright. Equal errors of either sign thus stand out equally, and the two hues stay apart in all
+//! common colour vision deficiencies.
+
+use super::palette::Rgb;
+
+/// Hue of negative and of positive errors in Oklab \[rad\].
+const BLUE: f64 = 4.45;
+const ORANGE: f64 = 0.95;
+/// Lightness at zero and at the ends.
+const LIGHT: f64 = 0.97;
+const DARK: f64 = 0.46;
+/// Chroma at the ends: the largest that both hues can show.
+const CHROMA: f64 = 0.105;
+
+/// The colour of an error as a fraction of the full scale; beyond ±1 the ends of the map.
+pub(crate) fn diverging(x: f64) -> Rgb {
+    // 127 levels on either side: an image then has at most 255 colours.
+    let x = (x.clamp(-1.0, 1.0) * 127.0).round() / 127.0;
+    let hue = if x < 0.0 { BLUE } else { ORANGE };
+    let lightness = LIGHT + (DARK - LIGHT) * x.abs();
+    let chroma = CHROMA * x.abs();
+    srgb_of_oklab([lightness, chroma * hue.cos(), chroma * hue.sin()])
+}
+
+/// The grey level of a transmittance: the sRGB encoding, estimates outside \[0, 1\] shown as black or white.
+pub(crate) fn grey(transmittance: f64) -> u8 {
+    byte(srgb_of_linear(transmittance.clamp(0.0, 1.0)))
+}
+
+fn byte(x: f64) -> u8 {
+    // A float-to-integer cast saturates, and NaN becomes black.
+    (x * 255.0).round() as u8
+}
+
+fn srgb_of_linear(c: f64) -> f64 {
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+}
+
+fn srgb_of_oklab([lightness, a, b]: [f64; 3]) -> Rgb {
+    let l = (lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b).powi(3);
+    let m = (lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b).powi(3);
+    let s = (lightness - 0.089_484_177_5 * a - 1.291_485_548_0 * b).powi(3);
+    let r = 4.076_741_662_1 * l - 3.307_711_591_3 * m + 0.230_969_929_2 * s;
+    let g = -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s;
+    let b = -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701_0 * s;
+    (byte(srgb_of_linear(r)), byte(srgb_of_linear(g)), byte(srgb_of_linear(b)))
+}
+
+/// The inverse of the sRGB encoding.
+#[cfg(test)]
+pub(crate) fn linear_of_srgb(c: f64) -> f64 {
+    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Oklab of linear RGB.
+#[cfg(test)]
+pub(crate) fn oklab_of_linear([r, g, b]: [f64; 3]) -> [f64; 3] {
+    let l = (0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b).cbrt();
+    let m = (0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b).cbrt();
+    let s = (0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b).cbrt();
+    [
+        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
+        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
+        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_errors_of_either_sign_are_equally_light() {
+        for step in 0..=10 {
+            let lightness = |x: f64| {
+                let (r, g, b) = diverging(x);
+                oklab_of_linear([r, g, b].map(|c| linear_of_srgb(f64::from(c) / 255.0)))[0]
+            };
+            let x = f64::from(step) / 10.0;
+            assert!((lightness(x) - lightness(-x)).abs() < 0.01, "at {x}");
+            let wanted = LIGHT + (DARK - LIGHT) * x;
+            assert!((lightness(x) - wanted).abs() < 0.01, "out of gamut at {x}");
+        }
+    }
+
+    #[test]
+    fn the_grey_of_an_estimate_is_defined_everywhere() {
+        assert_eq!([grey(-3.0), grey(0.0), grey(1.0), grey(7.0)], [0, 0, 255, 255]);
+        assert_eq!(grey(f64::NAN), 0);
+    }
+}

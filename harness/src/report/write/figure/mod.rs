@@ -1,0 +1,91 @@
+//! The figures: each has a drawing, a caption and a table, all from the same part of the report.
+
+mod anatomy;
+mod convergence;
+mod efficiency;
+mod functions;
+mod lookups;
+mod sweep;
+mod variance;
+
+use super::draw::{Draw, Drawing, Legend, Rect, both};
+use super::table::Table;
+use crate::report::result::{MediumReport, Report};
+use rayon::prelude::*;
+
+/// A figure of a medium.
+pub(crate) trait Figure: Draw {
+    /// File name without ending.
+    fn id(&self) -> String;
+    /// One line.
+    fn title(&self) -> String;
+    /// What is seen, with numbers from the data.
+    fn caption(&self) -> String;
+    /// All that is drawn, one row per point.
+    fn table(&self) -> Table;
+}
+
+/// A figure on its way into files and the page.
+pub(crate) struct Finished {
+    pub(crate) medium: String,
+    pub(crate) id: String,
+    pub(crate) title: String,
+    pub(crate) caption: String,
+    pub(crate) csv: String,
+    pub(crate) drawing: Drawing,
+}
+
+type Job<'a> = Box<dyn Fn() -> Result<Finished, String> + Send + Sync + 'a>;
+
+/// All figures, in the order of the page, drawn in parallel.
+pub(crate) fn all(report: &Report) -> Result<Vec<Finished>, String> {
+    let jobs: Vec<Job<'_>> = report.media.iter().flat_map(of_medium).collect();
+    jobs.par_iter().map(|job| job()).collect()
+}
+
+fn of_medium(medium: &MediumReport) -> Vec<Job<'_>> {
+    let mut jobs: Vec<Job<'_>> = sweep::albedos(medium)
+        .into_iter()
+        .map(|albedo| job(medium, variance::Variance { medium, albedo }))
+        .collect();
+    jobs.push(job(medium, lookups::Lookups { medium }));
+    jobs.push(job(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Lookups }));
+    jobs.push(job(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Seconds }));
+    jobs.push(job(medium, convergence::Convergence { medium, cost: convergence::Cost::Lookups }));
+    jobs.push(job(medium, convergence::Convergence { medium, cost: convergence::Cost::Seconds }));
+    jobs.push(job(medium, anatomy::AnatomyFigure { medium }));
+    jobs.push(job(medium, functions::Functions { medium }));
+    jobs
+}
+
+fn job<'a>(medium: &'a MediumReport, figure: impl Figure + Send + 'a) -> Job<'a> {
+    Box::new(move || {
+        let named = |error: String| format!("figure {}: {error}", figure.id());
+        Ok(Finished {
+            medium: medium.id.clone(),
+            id: figure.id(),
+            title: figure.title(),
+            caption: figure.caption(),
+            csv: figure.table().into_csv(),
+            drawing: both(&figure).map_err(named)?,
+        })
+    })
+}
+
+/// Width of every figure in pixels.
+const WIDTH: u32 = 1600;
+/// Left of the panels: labels and title of the y axis.
+const LEFT: f64 = 144.0;
+const RIGHT: f64 = 1600.0 - 28.0;
+/// Below the panels: labels and title of the x axis.
+const FOOT: f64 = 100.0;
+/// Where a legend begins.
+const LEGEND_LEFT: f64 = 40.0;
+const LEGEND_WIDTH: f64 = 1600.0 - 2.0 * LEGEND_LEFT;
+
+/// The rectangle of the panels, and the size of a figure that has a legend below them.
+fn frame(top: f64, height: f64, legend: &Legend) -> (Rect, [u32; 2]) {
+    let bottom = top + height;
+    let whole = bottom + FOOT + legend.height() + 16.0;
+    (Rect { left: LEFT, top, right: RIGHT, bottom }, [WIDTH, whole as u32])
+}

@@ -1,0 +1,108 @@
+//! `results.json`: one line per point. Fully pretty JSON would put each of a hundred thousand numbers on a line of its own.
+
+use super::super::result::Report;
+use serde::Serialize;
+use serde_json::ser::Formatter;
+use std::io::{Result, Write};
+
+/// Objects down to this depth have a line per field: those that hold curves, but not the points of a curve.
+const SPREAD: usize = 5;
+
+/// The file.
+pub(super) fn json(report: &Report) -> serde_json::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    report.serialize(&mut serde_json::Serializer::with_formatter(&mut bytes, Lines::default()))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// Fields of outer objects and objects in arrays begin a line; numbers in arrays do not.
+#[derive(Default)]
+struct Lines {
+    depth: usize,
+    /// An element of an array has begun, and it is not known yet whether it is a number or an object.
+    element: bool,
+}
+
+impl Lines {
+    fn line(&self, writer: &mut (impl Write + ?Sized), depth: usize) -> Result<()> {
+        writer.write_all(b"\n")?;
+        (0..depth).try_for_each(|_| writer.write_all(b" "))
+    }
+
+    fn open(&mut self, writer: &mut (impl Write + ?Sized), bracket: &[u8]) -> Result<()> {
+        if std::mem::take(&mut self.element) {
+            self.line(writer, self.depth)?;
+        }
+        self.depth += 1;
+        writer.write_all(bracket)
+    }
+}
+
+impl Formatter for Lines {
+    fn begin_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> Result<()> {
+        self.open(writer, b"[")
+    }
+
+    fn end_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> Result<()> {
+        self.depth -= 1;
+        writer.write_all(b"]")
+    }
+
+    fn begin_array_value<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> Result<()> {
+        self.element = true;
+        if first { Ok(()) } else { writer.write_all(b",") }
+    }
+
+    fn end_array_value<W: ?Sized + Write>(&mut self, _: &mut W) -> Result<()> {
+        self.element = false;
+        Ok(())
+    }
+
+    fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> Result<()> {
+        self.open(writer, b"{")
+    }
+
+    fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> Result<()> {
+        self.depth -= 1;
+        if self.depth < SPREAD {
+            self.line(writer, self.depth)?;
+        }
+        writer.write_all(b"}")
+    }
+
+    fn begin_object_key<W: ?Sized + Write>(&mut self, writer: &mut W, first: bool) -> Result<()> {
+        if !first {
+            writer.write_all(b",")?;
+        }
+        if self.depth <= SPREAD { self.line(writer, self.depth) } else { Ok(()) }
+    }
+
+    fn begin_object_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> Result<()> {
+        writer.write_all(if self.depth <= SPREAD { b": " } else { b":" })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_back_as_what_the_plain_writer_writes() {
+        let report = super::super::fixture::report();
+        let lines: serde_json::Value = serde_json::from_slice(&json(&report).unwrap()).unwrap();
+        assert_eq!(lines, serde_json::to_value(&report).unwrap());
+    }
+
+    #[test]
+    fn a_point_is_a_line() {
+        let report = super::super::fixture::report();
+        let text = String::from_utf8(json(&report).unwrap()).unwrap();
+        let points = report.media[0].sweeps.iter().map(|curve| curve.points.len()).sum::<usize>();
+        assert_eq!(
+            text.lines().filter(|line| line.trim_start().starts_with("{\"sigma_samp\"")).count(),
+            points
+        );
+        assert!(text.lines().any(|line| line.starts_with(" \"quick\": ")));
+    }
+}
