@@ -19,7 +19,7 @@ use fairflight_sources::UniformSource;
 ///
 /// **Moments.** The flights share ξ, so that this is no product over a Poisson process. Given ξ they are independent coins
 /// with escape probabilities g((k + ξ)/n), g(u) = (1 − σ_t(t)/majorant) T(t, S) at t = −ln(1 − u p_V)/majorant; the
-/// moments up to the 4th are integrals over ξ of those of the sum of coins.
+/// moments up to the 8th are integrals over ξ of those of the sum of coins.
 ///
 /// **Cost.** One estimate is one set of n flights: n · majorant ∫T(0, s) ds / p_V look-ups (a Woodcock flight without
 /// collision costs nothing, and p_V is the probability that there is one).
@@ -127,15 +127,8 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         let mean = n * (transmittance - (1.0 - p_volume)) / p_volume;
         let breaks: Vec<f64> = field.breakpoints().iter().map(|&t| (n * escape.variate(t)).fract()).collect();
         let moments = adaptive_integral(1.0, &breaks, tolerance, |shift| {
-            let [first, second, third, fourth] =
-                coins((0..self.splits).map(|k| escape.probability((f64::from(k) + shift) / n)));
-            let d = first - mean;
-            // Central moments of a sum of an offset d and a centred variable with the given central moments.
-            [
-                d * d + second,
-                d.powi(3) + 3.0 * d * second + third,
-                d.powi(4) + 6.0 * d * d * second + 4.0 * d * third + fourth,
-            ]
+            let probabilities = (0..self.splits).map(|k| escape.probability((f64::from(k) + shift) / n));
+            moments_about(mean, &coin_cumulants(probabilities))
         });
         let unit = p_volume / n / transmittance;
         for (k, moment) in moments.value.into_iter().enumerate() {
@@ -151,15 +144,67 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
     }
 }
 
-/// Mean, and the 2nd to 4th central moment, of the number of heads of independent coins.
-fn coins(probabilities: impl Iterator<Item = f64>) -> [f64; 4] {
-    let (mut mean, mut second, mut third, mut fourth_cumulant) = (0.0, 0.0, 0.0, 0.0);
+/// The cumulants κ_1 … κ_8 of the number of heads of independent coins: those of one coin, added.
+///
+/// With v = p (1 − p) and κ_{n+1} = v dκ_n/dp from κ_1 = p.
+fn coin_cumulants(probabilities: impl Iterator<Item = f64>) -> [f64; HIGHEST_MOMENT] {
+    let mut cumulants = [0.0; HIGHEST_MOMENT];
     for p in probabilities {
-        let variance = p * (1.0 - p);
-        mean += p;
-        second += variance;
-        third += variance * (1.0 - 2.0 * p);
-        fourth_cumulant += variance * (1.0 - 6.0 * variance);
+        let (v, odd) = (p * (1.0 - p), 1.0 - 2.0 * p);
+        let of_one = [
+            p,
+            v,
+            v * odd,
+            v * (1.0 - 6.0 * v),
+            v * odd * (1.0 - 12.0 * v),
+            v * (1.0 - 30.0 * v + 120.0 * v * v),
+            v * odd * (1.0 - 60.0 * v + 360.0 * v * v),
+            v * (1.0 - 126.0 * v + 1680.0 * v * v - 5040.0 * v * v * v),
+        ];
+        for (sum, cumulant) in cumulants.iter_mut().zip(of_one) {
+            *sum += cumulant;
+        }
     }
-    [mean, second, third, 3.0 * second * second + fourth_cumulant]
+    cumulants
+}
+
+/// E\[(X − centre)^n\], n = 2 … 8, of a variate X with these cumulants: the cumulants of X − centre differ in the first only,
+/// and m_n = Σ_{j=1..n} C(n − 1, j − 1) κ_j m_{n−j}.
+fn moments_about(centre: f64, cumulants: &[f64; HIGHEST_MOMENT]) -> [f64; HIGHEST_MOMENT - 1] {
+    let mut moments = [0.0; HIGHEST_MOMENT + 1];
+    moments[0] = 1.0;
+    for n in 1..=HIGHEST_MOMENT {
+        let mut binomial = 1.0;
+        for j in 1..=n {
+            let cumulant = if j == 1 { cumulants[0] - centre } else { cumulants[j - 1] };
+            moments[n] += binomial * cumulant * moments[n - j];
+            binomial *= (n - j) as f64 / j as f64;
+        }
+    }
+    std::array::from_fn(|i| moments[i + 2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn moments_of_coins_are_those_of_their_distribution() {
+        // Three coins, all eight outcomes by hand, about an arbitrary centre.
+        let coins = [0.2, 0.55, 0.9];
+        let centre = 1.3;
+        let moments = moments_about(centre, &coin_cumulants(coins.into_iter()));
+        for (i, moment) in moments.into_iter().enumerate() {
+            let exact: f64 = (0..8_u32)
+                .map(|outcome| {
+                    let up = |k: usize| outcome >> k & 1 == 1;
+                    let probability: f64 =
+                        (0..3).map(|k| if up(k) { coins[k] } else { 1.0 - coins[k] }).product();
+                    probability * (f64::from(outcome.count_ones()) - centre).powi(i as i32 + 2)
+                })
+                .sum();
+            assert_relative_eq!(moment, exact, max_relative = 1e-12);
+        }
+    }
 }

@@ -3,3 +3,4 @@
 mod common;
 mod estimate;
 mod refusals;
+mod report;

@@ -84,9 +84,4 @@ impl Entry {
             (_, None) => String::new(),
         }
     }
-
-    /// Whether this is a labelled biased baseline.
-    pub(super) fn is_baseline(&self) -> bool {
-        matches!(self.series, Series::RayMarching | Series::JitteredRayMarching)
-    }
 }

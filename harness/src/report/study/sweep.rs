@@ -142,7 +142,7 @@ fn measured(
     let relative = moments.scaled(1.0 / truth.transmittance());
     let relative_mean = relative.mean().unwrap_or(f64::NAN);
     // About the truth for a baseline: the bias is part of its error.
-    let (relative_variance, error) = if entry.is_baseline() {
+    let (relative_variance, error) = if entry.series.is_baseline() {
         let bias = relative_mean - 1.0;
         let mse = relative.population_variance().unwrap_or(f64::NAN) + bias * bias;
         (mse, mse_standard_error(&prediction.theory, n))

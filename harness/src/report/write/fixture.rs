@@ -1,6 +1,6 @@
 //! A small made-up report with every kind of trouble: gaps, infinities, zero variance, curves that leave, untestable points.
 
-use super::palette::{SERIES, is_baseline};
+use super::palette::SERIES;
 use crate::report::result::*;
 use crate::result::Provenance;
 
@@ -138,7 +138,7 @@ fn convergence(series: Series) -> ConvergenceCurve {
     let shift = f64::from(u32::try_from(super::palette::rank(series)).unwrap()) / 4.0;
     let points = (0..6).map(|k| {
         let lookups = 10_f64.powi(k);
-        let relative_bias = if is_baseline(series) { 0.01 } else { 0.0 };
+        let relative_bias = if series.is_baseline() { 0.01 } else { 0.0 };
         let rmse = 10_f64.powf(shift) / lookups.sqrt() + relative_bias;
         ConvergencePoint {
             estimates: 1 << k,

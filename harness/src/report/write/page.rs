@@ -7,7 +7,7 @@ use super::images::{Exhibit, Gallery, Picture};
 use super::markdown;
 use super::number::{listed, short, short_of_log10};
 use super::optimum::{self, Optimum, Place};
-use super::palette::{is_baseline, is_oracle, look};
+use super::palette::{is_oracle, look};
 use super::png;
 use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value, context};
@@ -230,7 +230,7 @@ struct Findings {
 }
 
 fn findings(part: &MediumReport) -> Findings {
-    let competing = |curve: &&SweepCurve| !is_baseline(curve.series) && !is_oracle(curve.series);
+    let competing = |curve: &&SweepCurve| !curve.series.is_baseline() && !is_oracle(curve.series);
     let mut best: Vec<Optimum<'_>> =
         part.sweeps.iter().filter(competing).filter_map(optimum::per_lookup).collect();
     best.sort_by(|a, b| b.log10_efficiency.total_cmp(&a.log10_efficiency));
@@ -288,7 +288,7 @@ fn verdicts(report: &Report) -> Vec<String> {
     }
     // A baseline is known to be biased: that its test fails is no news.
     let curves =
-        || report.media.iter().flat_map(|part| &part.sweeps).filter(|curve| !is_baseline(curve.series));
+        || report.media.iter().flat_map(|part| &part.sweeps).filter(|curve| !curve.series.is_baseline());
     let points = || curves().flat_map(|curve| &curve.points).filter_map(|point| point.measured.as_ref());
     if points().next().is_some() {
         let sound = |verdict| points().filter(|measured| measured.sound == verdict).count();

@@ -95,11 +95,6 @@ pub(crate) fn rank(series: Series) -> usize {
     SERIES.iter().position(|&known| known == series).unwrap_or(SERIES.len())
 }
 
-/// A biased baseline: it does not compete.
-pub(crate) fn is_baseline(series: Series) -> bool {
-    matches!(series, Series::RayMarching | Series::JitteredRayMarching)
-}
-
 /// Presumes the answer: it shows what a control could gain, and does not compete either.
 pub(crate) fn is_oracle(series: Series) -> bool {
     matches!(series, Series::DoubleParticleMean)

@@ -6,7 +6,7 @@ use crate::report::write::draw::{
     Axis, Canvas, Draw, Drawn, FAINT, Fill, INK, Labels, Legend, Panel, Sign, Stroke,
 };
 use crate::report::write::number::{listed, short};
-use crate::report::write::palette::{is_baseline, label, look, rank};
+use crate::report::write::palette::{label, look, rank};
 use crate::report::write::table::{Cell, Table};
 use plotters::backend::DrawingBackend;
 
@@ -115,7 +115,7 @@ impl Figure for Convergence<'_> {
         let floors: Vec<String> = self
             .curves()
             .into_iter()
-            .filter(|curve| is_baseline(curve.series))
+            .filter(|curve| curve.series.is_baseline())
             .filter_map(|curve| {
                 let last = curve.points.last()?;
                 let name = look(curve.series).name;

@@ -6,7 +6,7 @@ use crate::report::result::{MediumReport, SweepCurve, SweepPoint};
 use crate::report::write::draw::{Axis, Canvas, Draw, Drawn, FAINT, Fill, Legend, Sign};
 use crate::report::write::number::{power_of_ten, short, short_of_log10};
 use crate::report::write::optimum::{self, Optimum, Place};
-use crate::report::write::palette::{Marker, is_baseline, is_oracle, look};
+use crate::report::write::palette::{Marker, is_oracle, look};
 use crate::report::write::table::{Cell, Table};
 use plotters::backend::DrawingBackend;
 
@@ -51,7 +51,7 @@ impl Efficiency<'_> {
     /// The axis follows the unbiased estimators: a baseline that happens to hit the truth is arbitrarily efficient.
     fn y(&self) -> Axis {
         let values = || {
-            let unbiased = self.medium.sweeps.iter().filter(|curve| !is_baseline(curve.series));
+            let unbiased = self.medium.sweeps.iter().filter(|curve| !curve.series.is_baseline());
             let points = unbiased.flat_map(|curve| &curve.points);
             points.filter_map(|point| self.value(point)).filter(|y| y.is_finite())
         };
@@ -191,7 +191,7 @@ impl Figure for Efficiency<'_> {
 
 /// A baseline is biased, and the mean as control presumes the answer: neither competes.
 fn is_special(curve: &SweepCurve) -> bool {
-    is_baseline(curve.series) || is_oracle(curve.series)
+    curve.series.is_baseline() || is_oracle(curve.series)
 }
 
 /// A remark on an optimum at the end of its curve.

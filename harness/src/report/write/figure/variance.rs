@@ -5,7 +5,7 @@ use super::{FOOT, Figure, LEGEND_LEFT, LEGEND_WIDTH, frame};
 use crate::report::result::{MediumReport, SweepCurve, SweepPoint};
 use crate::report::write::draw::{Axis, Canvas, Draw, Drawn, Fill, Labels, Legend, Panel};
 use crate::report::write::number::{listed, power_of_ten, short};
-use crate::report::write::palette::{is_baseline, look};
+use crate::report::write::palette::look;
 use crate::report::write::table::{Cell, Table};
 use plotters::backend::DrawingBackend;
 
@@ -95,7 +95,7 @@ impl Figure for Variance<'_> {
     fn caption(&self) -> String {
         let curves = self.curves();
         // A baseline is known to be biased: that its test fails is no news.
-        let unbiased = || curves.iter().filter(|curve| !is_baseline(curve.series));
+        let unbiased = || curves.iter().filter(|curve| !curve.series.is_baseline());
         let measured =
             || unbiased().flat_map(|curve| &curve.points).filter_map(|point| point.measured.as_ref());
         let (total, testable) = (measured().count(), measured().filter(|m| m.testable).count());

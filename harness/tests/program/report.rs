@@ -1,0 +1,84 @@
+//! `report` and `verify`, as quick as they are.
+
+use crate::common::{fixture, harness};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+}
+
+#[test]
+fn the_quick_report_is_complete_and_says_where_it_comes_from() {
+    let parent = tempfile::tempdir().expect("a temporary folder");
+    let folder = parent.path().join("report");
+    let path = folder.to_str().expect("UTF-8");
+    let outcome = harness(&["report", "--quick", "--vdb", &fixture("tiles.vdb"), "--out", path], "");
+    assert_eq!((outcome.code, outcome.stdout.as_str()), (0, ""), "{}", outcome.stderr);
+    // Nothing is left beside the report.
+    assert_eq!(names(parent.path()), ["report"]);
+
+    let results: Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("results.json")).expect("results"))
+            .expect("JSON");
+    let command = results["provenance"]["command"].as_str().expect("a command");
+    assert!(command.starts_with("harness report --quick --vdb"), "{command}");
+    assert_eq!(results["media"].as_array().map(Vec::len), Some(3));
+    assert_eq!(results["claims"].as_array().map(Vec::len), Some(7));
+    assert!(results["stability"].as_array().is_some_and(|rows| rows.iter().all(|row| row["passes"] == true)));
+
+    let page = fs::read_to_string(folder.join("index.html")).expect("a page");
+    assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs no network");
+    let files = names(&folder);
+    for plot in files.iter().filter(|name| name.ends_with(".svg")) {
+        for format in ["png", "csv"] {
+            let sibling = plot.replace(".svg", &format!(".{format}"));
+            assert!(files.contains(&sibling), "{plot} has no {sibling}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_written_is_said_before_anything_is_measured() {
+    let parent = tempfile::tempdir().expect("a temporary folder");
+    let file = parent.path().join("file");
+    fs::write(&file, "not a folder").expect("writable");
+    let foreign = parent.path().join("foreign");
+    fs::create_dir(&foreign).expect("writable");
+    fs::write(foreign.join("thesis.tex"), "precious").expect("writable");
+    for out in [file.join("below"), file.clone(), foreign.clone()] {
+        let outcome = harness(&["report", "--out", out.to_str().expect("UTF-8")], "");
+        assert_eq!((outcome.code, outcome.stdout.as_str()), (3, ""), "{}: {}", out.display(), outcome.stderr);
+        assert_eq!(outcome.stderr.trim_end().lines().count(), 1, "{}", outcome.stderr);
+    }
+    assert_eq!(fs::read_to_string(foreign.join("thesis.tex")).expect("still there"), "precious");
+    assert_eq!(names(parent.path()).len(), 2);
+}
+
+#[test]
+fn bad_reports_are_refused_and_leave_nothing() {
+    let parent = tempfile::tempdir().expect("a temporary folder");
+    let out = parent.path().join("report");
+    let out = out.to_str().expect("UTF-8");
+    let truncated = fixture("truncated.vdb");
+    for arguments in [
+        &["report", "unheard", "--out", out][..],
+        &["report", "--quick", "--vdb", "no/such.vdb", "--out", out],
+        &["report", "--quick", "--vdb", &truncated, "--out", out],
+        &["report", "--quick", "--grid", "density", "--out", out],
+    ] {
+        let outcome = harness(arguments, "");
+        assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""), "{arguments:?}: {}", outcome.stderr);
+    }
+    assert!(names(parent.path()).is_empty());
+}
+
+#[test]
+fn verify_of_one_estimator_holds_and_prints_its_power() {
+    let outcome = harness(&["verify", "--quick", "--estimator", "line_integral"], "");
+    assert_eq!(outcome.code, 0, "{}{}", outcome.stdout, outcome.stderr);
+    assert!(outcome.stdout.contains("0 do not hold") && outcome.stdout.contains("with probability 0.99"));
+    assert!(outcome.stdout.contains("line_integral_4") && !outcome.stdout.contains("/woodcock"));
+}
