@@ -1,7 +1,7 @@
 //! One experiment from its plan to its result: predict, measure, analyse.
 
 use crate::Failure;
-use crate::measure::{Measurement, measure};
+use crate::measure::{Draws, Measurement, measure};
 use crate::plan::{
     AnyEstimator, Estimator, EstimatorJob, Field, FieldJob, KnownField, Lawful, Plan, ThicknessMethod,
 };
@@ -59,10 +59,15 @@ impl FieldJob for Draw<'_> {
 impl EstimatorJob for Draw<'_> {
     type Output = Result<Measurement, Failure>;
     fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
-        let Plan { profile, estimator: any, samples, seed, .. } = self.plan;
+        let &Plan { ref profile, estimator: ref any, samples, seed, counted, .. } = self.plan;
         let upper_bound = self.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
         let place = |violation: Violation| explain(profile, any, self.truth, violation);
-        measure(Lawful { field, estimator, upper_bound }, *samples, *seed, &place, self.advance)
+        measure(
+            Lawful { field, estimator, upper_bound },
+            Draws { samples, seed, counted },
+            &place,
+            self.advance,
+        )
     }
 }
 

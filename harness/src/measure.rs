@@ -20,9 +20,9 @@ pub struct Measurement {
     pub seconds: f64,
 }
 
-/// Look-ups are counted in a second run over the same variates, of at most this many samples: a run that does not count
-/// is the one that is timed, and a mean of a million counts is known to a thousandth.
-const MOST_COUNTED: u64 = 1 << 20;
+/// Look-ups are counted in a second run over the same variates, since the run that is timed does not count: of at most
+/// this many samples, where nothing else is asked for. A mean of a million counts is known to a thousandth.
+pub const MOST_COUNTED: u64 = 1 << 20;
 
 /// Batches in flight before their moments are merged: memory does not grow with the number of samples.
 const CHUNK: u64 = 1 << 9;
@@ -35,19 +35,29 @@ struct Batch {
     counted: u64,
 }
 
-/// Draws `samples` estimates from `seed`. `advance` is told how many samples were added.
+/// How much is drawn, and from which seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Draws {
+    /// The number of estimates.
+    pub samples: u64,
+    /// The seed of their variates.
+    pub seed: u64,
+    /// Of how many, in whole batches, the look-ups are counted.
+    pub counted: u64,
+}
+
+/// Draws estimates. `advance` is told how many samples were added.
 ///
 /// # Errors
 /// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), or an estimate is not
 /// finite.
 pub fn measure<G: Field, E: Estimator<G>>(
     lawful: Lawful<G, E>,
-    samples: u64,
-    seed: u64,
+    draws: Draws,
     place: &(dyn Fn(Violation) -> Failure + Sync),
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    let batches = batch_count(samples);
+    let batches = batch_count(draws.samples);
     let mut moments = Moments::new();
     let (mut seconds, mut lookups, mut counted) = (0.0, 0, 0);
     for start in (0..batches).step_by(CHUNK as usize) {
@@ -56,8 +66,8 @@ pub fn measure<G: Field, E: Estimator<G>>(
             .map_init(
                 || Vec::with_capacity(BATCH as usize),
                 |values, index| {
-                    let batch = one_batch(lawful, samples, seed, index, values, place)?;
-                    advance(batch_size(samples, index));
+                    let batch = one_batch(lawful, draws, index, values, place)?;
+                    advance(batch_size(draws.samples, index));
                     Ok(batch)
                 },
             )
@@ -76,8 +86,7 @@ pub fn measure<G: Field, E: Estimator<G>>(
 
 fn one_batch<G: Field, E: Estimator<G>>(
     lawful: Lawful<G, E>,
-    samples: u64,
-    seed: u64,
+    Draws { samples, seed, counted: most_counted }: Draws,
     index: u64,
     values: &mut Vec<f64>,
     place: &(dyn Fn(Violation) -> Failure + Sync),
@@ -92,7 +101,7 @@ fn one_batch<G: Field, E: Estimator<G>>(
     }
     let moments = batch_moments(seed, index, values).map_err(Failure::refused)?;
     let (mut lookups, mut counted) = (0, 0);
-    if index * BATCH < MOST_COUNTED {
+    if index * BATCH < most_counted {
         let counting = Counted::new(watched);
         draw_batch(seed, index, samples, values, |source: &mut Seeded| estimator.estimate(&counting, source));
         lookups = counting.lookups();

@@ -21,6 +21,7 @@ pub use sampling::AnySampling;
 pub use voxel_lattice::VoxelLattice;
 
 use crate::Failure;
+use crate::measure::MOST_COUNTED;
 use crate::spec::{EstimatorSpec, Experiment};
 
 /// An experiment whose parts fit together.
@@ -36,6 +37,8 @@ pub struct Plan {
     pub samples: u64,
     /// The seed of their variates.
     pub seed: u64,
+    /// Of how many estimates the look-ups are counted.
+    pub counted: u64,
 }
 
 impl Plan {
@@ -54,6 +57,6 @@ impl Plan {
     /// If the two do not fit.
     pub fn on(profile: AnyProfile, spec: EstimatorSpec, samples: u64, seed: u64) -> Result<Self, Failure> {
         let estimator = AnyEstimator::build(&spec, &profile)?;
-        Ok(Self { profile, estimator, spec, samples, seed })
+        Ok(Self { profile, estimator, spec, samples, seed, counted: MOST_COUNTED })
     }
 }

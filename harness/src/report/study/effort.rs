@@ -42,7 +42,7 @@ impl Effort {
                 measured_every: 6,
                 unmeasured_ends: 0,
                 point_seconds: 0.025,
-                testable_seconds: 0.3,
+                testable_seconds: 0.8,
                 convergence_seconds: 0.1,
                 most_steps: 4096,
                 resolution: 96,
@@ -52,8 +52,11 @@ impl Effort {
     }
 }
 
-/// The fewest and the most samples of a point: a whole batch, and what is counted of a run.
-const SAMPLES: (u32, u32) = (12, 20);
+/// The fewest and the most samples of a point, as powers of two: a whole batch, and some seconds of the cheapest field.
+const SAMPLES: (u32, u32) = (12, 22);
+
+/// Of how many samples of a point the look-ups are counted: known to a percent.
+pub(super) const COUNTED: u64 = 1 << 13;
 
 impl Effort {
     /// Whether the i-th point of a sweep is measured.
@@ -79,11 +82,10 @@ pub(super) fn samples_to_test(seconds: f64, at_most: f64, nanoseconds: f64, need
     }
 }
 
-/// The power of two of samples that fits into `seconds` if one costs `nanoseconds`; each is drawn twice, once to be timed
-/// and once to count its look-ups.
+/// The power of two of samples that fits into `seconds` if one costs `nanoseconds`.
 pub(super) fn samples_within(seconds: f64, nanoseconds: f64) -> u64 {
     // Drawing variates and logarithms costs about as much as a cheap look-up, whatever the field.
-    let each = 2.0 * (nanoseconds + 20.0);
+    let each = nanoseconds + 20.0;
     let exponent = (seconds * 1e9 / each).log2().floor();
     1 << (exponent.max(0.0) as u32).clamp(SAMPLES.0, SAMPLES.1)
 }
@@ -96,16 +98,16 @@ mod tests {
     fn samples_are_powers_of_two_within_the_budget() {
         for nanoseconds in [1.0, 600.0, 8e3, 3e5] {
             let n = samples_within(0.1, nanoseconds);
-            assert!(n.is_power_of_two() && (4096..=1 << 20).contains(&n));
-            assert!(n == 4096 || n as f64 * 2.0 * nanoseconds <= 1e8);
+            assert!(n.is_power_of_two() && (4096..=1 << 22).contains(&n));
+            assert!(n == 4096 || n as f64 * nanoseconds <= 1e8);
         }
     }
 
     #[test]
     fn a_test_is_paid_for_where_it_is_affordable() {
         let effort = Effort { point_seconds: 0.01, testable_seconds: 0.1, ..Effort::of(false) };
-        assert_eq!(effort.samples(980.0, f64::INFINITY), 4096);
-        assert_eq!(effort.samples(980.0, 30_000.0), 32_768);
-        assert_eq!(effort.samples(980.0, 60_000.0), 4096);
+        assert_eq!(effort.samples(1980.0, f64::INFINITY), 4096);
+        assert_eq!(effort.samples(1980.0, 30_000.0), 32_768);
+        assert_eq!(effort.samples(1980.0, 60_000.0), 4096);
     }
 }

@@ -1,5 +1,6 @@
 //! Variance, cost and efficiency against the sampling extinction: every curve in closed form, some of its points measured.
 
+use super::effort::COUNTED;
 use super::laws::SharedLaws;
 use super::preparation::preparation_seconds;
 use super::series::{Entry, all};
@@ -85,6 +86,7 @@ fn point(
     };
     let spec = entry.at(subject, sigma_samp);
     let mut plan = Plan::on(subject.profile.clone(), spec, 0, seed.unwrap_or_default())?;
+    plan.counted = COUNTED;
     let Some(prediction) = laws.law(subject, &plan.estimator)? else { return Ok(undefined) };
     let lookups = prediction.theory.lookups + plan.estimator.preparation_lookups() as f64;
     let log10_mse = log10_relative_mse(&prediction.theory);

@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::experiment::{compare, measure_plan};
 use crate::plan::{AnyProfile, Plan};
 use crate::reference::{Truth, predict};
-use crate::report::study::effort::samples_to_test;
+use crate::report::study::effort::{COUNTED, samples_to_test};
 use crate::report::study::sweep::samples_needed;
 use crate::spec::EstimatorSpec;
 use fairflight_media::{Constant, Tolerance};
@@ -41,6 +41,7 @@ impl Case {
         nanoseconds: f64,
     ) -> Result<Self, Failure> {
         let mut plan = Plan::on(profile.clone(), spec, 0, seed)?;
+        plan.counted = COUNTED;
         let truth = Truth::of(profile, Tolerance::TIGHT)?;
         let prediction = predict(profile, &plan.estimator, &truth, Tolerance::to(1e-9))?;
         let walk = prediction.theory.lookups * nanoseconds;
