@@ -115,6 +115,9 @@ fn main() {
         bounds.clip(origin, direction, None).expect("finite").expect("the ray meets the bounds")
     };
     bench_field(&mut criterion, "constant", Constant::new(0.5, LENGTH).expect("finite"), 1.0);
+    // Five times as many look-ups per walk: what the end of a walk costs shows in the difference.
+    let long = Constant::new(0.5, 5.0 * LENGTH).expect("finite");
+    bench_field(&mut criterion, "constant, long", long, 1.0);
 
     let cosine = AnalyticCosine::new(1.0).expect("finite");
     let clip = axis(DVec3::ZERO, DVec3::Z, &AnalyticCosine::default_bounds());

@@ -42,7 +42,7 @@ impl Effort {
                 measured_every: 6,
                 unmeasured_ends: 0,
                 point_seconds: 0.025,
-                testable_seconds: 0.8,
+                testable_seconds: 0.6,
                 convergence_seconds: 0.1,
                 most_steps: 4096,
                 resolution: 96,
