@@ -28,6 +28,7 @@ mod homogeneous;
 mod lattice_planes;
 mod medium;
 mod perlin;
+pub mod phase;
 mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
@@ -47,6 +48,7 @@ pub use extinction::{
 pub use homogeneous::Homogeneous;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
 pub use perlin::{Perlin, PerlinParameters};
+pub use phase::{PhaseFunction, Scattered};
 pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
