@@ -27,6 +27,6 @@ mod woodcock;
 
 pub use branch::Branch;
 pub use double_particle::DoubleParticle;
-pub use model::{Albedo, AlbedoError, CollisionModel};
+pub use model::{Albedo, AlbedoError, CollisionModel, Outcome, SingleOutcome};
 pub use single_particle::{SingleParticle, Version};
 pub use woodcock::Woodcock;

@@ -22,6 +22,26 @@ pub trait CollisionModel {
     fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64>;
 }
 
+/// A model that keeps at most one of the two particles, so that a walk does not branch.
+///
+/// **Law.** [`collide`](Self::collide) scatters and transmits with exactly the probabilities and energies that
+/// [`scattered`](CollisionModel::scattered) and [`transmitted`](CollisionModel::transmitted) state.
+pub trait SingleOutcome: CollisionModel {
+    /// Draws what leaves the collision, from one variate.
+    fn collide<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Outcome;
+}
+
+/// The one particle that leaves a collision, with its energy as a multiple of the incident one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// It takes a new direction.
+    Scattered(f64),
+    /// It goes straight on.
+    Transmitted(f64),
+    /// None does.
+    Absorbed,
+}
+
 /// The probability that a collision with matter scatters: σ_s / σ_t, within \[0, 1\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Albedo(f64);

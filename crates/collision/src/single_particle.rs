@@ -1,6 +1,6 @@
 //! The single particle model: at most one of the two particles is kept (szirmay-kalos-2017 eq. 9 and 12).
 
-use crate::{Albedo, Branch, CollisionModel};
+use crate::{Albedo, Branch, CollisionModel, Outcome, SingleOutcome};
 use fairflight_sources::UniformSource;
 
 /// How the probabilities q_scat and q_tran are chosen from a·|r| and |1 − r|.
@@ -98,5 +98,38 @@ impl CollisionModel for SingleParticle {
     fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
         let transmitted = self.transmitted(r);
         if source.next_uniform() < transmitted.probability { Some(transmitted.energy) } else { None }
+    }
+}
+
+/// SimulateParticle's decision (szirmay-kalos-2017 section 4.1).
+impl SingleOutcome for SingleParticle {
+    #[inline]
+    fn collide<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Outcome {
+        let u = source.next_uniform();
+        let scatter = self.albedo.get() * r.abs();
+        let transmit = (1.0 - r).abs();
+        let sum = scatter + transmit;
+        let keeps_both = match self.version {
+            Version::Terminating => false,
+            Version::NonTerminating => true,
+            Version::Adaptive => r < 1.0 || sum > 1.0,
+        };
+        if !keeps_both {
+            return if u < scatter {
+                Outcome::Scattered(1.0_f64.copysign(r))
+            } else if u < sum {
+                Outcome::Transmitted(1.0_f64.copysign(1.0 - r))
+            } else {
+                Outcome::Absorbed
+            };
+        }
+        // u q_sum < q_scat instead of u < q_scat / q_sum: a product in place of two quotients. Its rounding must not choose
+        // a particle of probability 0.
+        if u * sum < scatter || transmit == 0.0 {
+            // At a = 0, r = 1 eq. 12 is 0/0: neither particle has energy, and the walk ends.
+            if sum == 0.0 { Outcome::Absorbed } else { Outcome::Scattered(sum.copysign(r)) }
+        } else {
+            Outcome::Transmitted(sum.copysign(1.0 - r))
+        }
     }
 }

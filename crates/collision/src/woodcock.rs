@@ -1,6 +1,6 @@
 //! Woodcock's model: virtual particles raise the extinction to a majorant (szirmay-kalos-2017 3.1, eq. 7).
 
-use crate::{Albedo, Branch, CollisionModel};
+use crate::{Albedo, Branch, CollisionModel, Outcome, SingleOutcome};
 use fairflight_sources::UniformSource;
 
 /// A collision is with matter with probability r, else with a virtual particle that changes nothing.
@@ -32,5 +32,19 @@ impl CollisionModel for Woodcock {
     #[inline]
     fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
         if source.next_uniform() < r { None } else { Some(1.0) }
+    }
+}
+
+impl SingleOutcome for Woodcock {
+    #[inline]
+    fn collide<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Outcome {
+        let u = source.next_uniform();
+        if u < self.albedo.get() * r {
+            Outcome::Scattered(1.0)
+        } else if u < r {
+            Outcome::Absorbed
+        } else {
+            Outcome::Transmitted(1.0)
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use approx::assert_relative_eq;
 use fairflight_collision::{
-    Albedo, Branch, CollisionModel, DoubleParticle, SingleParticle, Version, Woodcock,
+    Albedo, Branch, CollisionModel, DoubleParticle, Outcome, SingleOutcome, SingleParticle, Version, Woodcock,
 };
 use fairflight_sources::{LARGEST_VARIATE, Scripted};
 
@@ -40,6 +40,49 @@ fn every_model_obeys_equation_8() {
         check_law(&DoubleParticle { albedo: albedo(a) }, a, false);
         for version in [Version::Terminating, Version::NonTerminating, Version::Adaptive] {
             check_law(&single(version, a), a, true);
+        }
+    }
+}
+
+/// `collide` draws what `scattered` and `transmitted` state: with one variate in the middle of each of 4096 strata, the
+/// shares of the outcomes are off by one stratum at most.
+fn check_collide(model: &impl SingleOutcome, a: f64) {
+    const STRATA: u32 = 4096;
+    for r in RATIOS.into_iter().chain([2.0 / (1.0 + a)]).filter(|&r| model.admits(r)) {
+        let (mut scattered, mut transmitted) = (0.0, 0.0);
+        for i in 0..STRATA {
+            let u = (f64::from(i) + 0.5) / f64::from(STRATA);
+            match model.collide(r, &mut Scripted::new([u])) {
+                Outcome::Scattered(energy) => scattered += energy / f64::from(STRATA),
+                Outcome::Transmitted(energy) => transmitted += energy / f64::from(STRATA),
+                Outcome::Absorbed => {}
+            }
+        }
+        let granted = 1.01 / f64::from(STRATA) * (1.0 + 2.0 * r.abs());
+        assert!((scattered - a * r).abs() <= granted, "a = {a}, r = {r}: {scattered}");
+        assert!((transmitted - (1.0 - r)).abs() <= granted, "a = {a}, r = {r}: {transmitted}");
+    }
+}
+
+#[test]
+fn one_variate_draws_both_branches() {
+    for a in ALBEDOS {
+        check_collide(&Woodcock { albedo: albedo(a) }, a);
+        for version in [Version::Terminating, Version::NonTerminating, Version::Adaptive] {
+            check_collide(&single(version, a), a);
+        }
+    }
+}
+
+#[test]
+fn no_variate_draws_what_has_no_probability() {
+    for version in [Version::NonTerminating, Version::Adaptive] {
+        for u in [0.0, LARGEST_VARIATE] {
+            let at = |a: f64, r: f64| single(version, a).collide(r, &mut Scripted::new([u]));
+            assert_eq!(at(0.5, 0.0), Outcome::Transmitted(1.0));
+            assert!(matches!(at(0.0, 0.3), Outcome::Transmitted(_)));
+            assert!(matches!(at(1.0, 1.0), Outcome::Scattered(_)));
+            assert_eq!(at(0.0, 1.0), Outcome::Absorbed);
         }
     }
 }
