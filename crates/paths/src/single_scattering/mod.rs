@@ -241,12 +241,8 @@ where
         self.primary.trace(&ray, source);
         let mut radiance = background * self.primary.transmittance(&ray, ray.length());
         if self.sampling.uses(Technique::Scattering) {
-            if let Some(fitted) = self.primary.fitted() {
-                self.fit.refit(fitted, ray.length());
-            } else {
-                self.explorers.next_ray(&ray);
-                self.fit.refit(self.explorers.explorers(), ray.length());
-            }
+            let fitted = self.primary.fitted().unwrap_or_else(|| self.explorers.next_ray(&ray));
+            self.fit.refit(fitted, ray.length());
         }
         for light in &self.lights.sources {
             radiance += match self.sampling {
