@@ -69,12 +69,12 @@ pub(super) fn twins() -> Vec<Twin> {
         Twin::new(
             "phase function",
             "henyey_greenstein_that_cancels",
-            "the inversion as printed, (1 + g² − ((1 − g²)/(1 − g + 2gu))²)/(2g), at a g that is small and not 0",
-            "Henyey-Greenstein, g = 1e-7",
+            "the inversion as printed, (1 + g² − ((1 − g²)/(1 − g + 2gu))²)/(2g), whose rounding error is 1e-16/g",
+            "Henyey-Greenstein, g = 1e-12",
             (0, Evident::Exactly),
             |_| {
-                let right = HenyeyGreenstein::new(1e-7).expect(LAWFUL);
-                match (check_exactly(&right), check_exactly(&Cancelling { g: 1e-7, right })) {
+                let right = HenyeyGreenstein::new(1e-12).expect(LAWFUL);
+                match (check_exactly(&right), check_exactly(&Cancelling { g: 1e-12, right })) {
                     (Ok(()), Err(broken)) => Rejection::exact(true, broken.to_string()),
                     (right, _) => Rejection::exact(false, format!("not told from the right one: {right:?}")),
                 }
