@@ -3,6 +3,7 @@
 mod estimators;
 mod exact;
 mod media;
+mod phase;
 mod single_particle;
 mod specimen;
 
@@ -20,6 +21,8 @@ pub enum Law {
     OwnExpectation,
     /// szirmay-kalos-2017 eq. 8, by exact algebra.
     Collision,
+    /// A phase function is normalised, has its mean cosine, and is drawn as it is evaluated.
+    Phase,
     /// A wrong twin is rejected.
     WrongTwin,
     /// A hard case has its exact answer, or is refused where it must be.
@@ -37,7 +40,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `collision/model`, `twin/name`, `hard/number name`.
+    /// Unique: `medium/estimator`, `collision/model`, `phase/name`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
@@ -76,7 +79,7 @@ impl Check {
     #[must_use]
     pub fn samples(&self, effort: Effort) -> u64 {
         match (effort, self.law) {
-            (Effort::Full, Law::Transmittance | Law::Variance | Law::OwnExpectation) => {
+            (Effort::Full, Law::Transmittance | Law::Variance | Law::OwnExpectation | Law::Phase) => {
                 6 * self.quick_samples
             }
             _ => self.quick_samples,
@@ -109,6 +112,7 @@ fn fingerprint(name: &str) -> u64 {
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
+    checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples) = (format!("twin/{}", twin.id), twin.samples);

@@ -8,6 +8,7 @@ mod control;
 mod line_integral;
 mod logarithm;
 mod majorant;
+mod phase;
 mod sampling;
 mod trial;
 mod variance;
@@ -103,5 +104,6 @@ pub fn twins() -> Vec<Twin> {
     all.extend(line_integral::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
+    all.extend(phase::twins());
     all
 }
