@@ -7,6 +7,7 @@
 //! | [`PhotonTracer`] | szirmay-kalos-2017 4.1 | all orders, photons from the lights |
 //! | [`LineSplitting`] | raab-2008 3.1, algorithm 2 | all orders, several first collisions per camera ray |
 //! | [`single_scattering::SingleScattering`] | szirmay-kalos-2017 4.3 | one scattering event |
+//! | [`single_scattering::LineSampled`] | raab-2008 3.1, algorithm 2 | one scattering event |
 //! | [`single_scattering::Marching`] | perlin-1989 | one scattering event, a biased baseline |
 //!
 //! A walk looks the medium up at the rate of a [`SamplingExtinction`], which need not bound the extinction; whether it then has a

@@ -1,11 +1,13 @@
 //! Light that is scattered once on its way from lights without extent (szirmay-kalos-2017 section 4.3, eq. 22).
 
+mod line;
 mod marching;
 mod primary;
 mod scattering_driven;
 mod source_driven;
 mod technique;
 
+pub use line::LineSampled;
 pub use marching::Marching;
 pub use primary::{Primary, SharedExplorers, Tracked};
 pub use scattering_driven::ScatteringDriven;
