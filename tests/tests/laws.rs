@@ -52,6 +52,7 @@ media!(
     perlin,
     voxels,
     expression,
+    freeflight,
 );
 
 #[test]

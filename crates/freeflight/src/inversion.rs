@@ -41,8 +41,12 @@ impl<F: Extinction> ClosedForm<F> for Inversion {
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
         unweighted_escaped(quadrature, tolerance)
     }
-    fn lookups(&self, _quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<f64> {
-        Some(0.0)
+    fn lookups(
+        &self,
+        _quadrature: &mut RayQuadrature<F>,
+        _tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]> {
+        Some([0.0; HIGHEST_MOMENT])
     }
 }
 

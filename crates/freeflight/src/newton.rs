@@ -51,7 +51,11 @@ impl<F: Extinction> ClosedForm<F> for Newton {
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
         unweighted_escaped(quadrature, tolerance)
     }
-    fn lookups(&self, _quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<f64> {
+    fn lookups(
+        &self,
+        _quadrature: &mut RayQuadrature<F>,
+        _tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]> {
         None
     }
 }

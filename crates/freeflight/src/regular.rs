@@ -1,7 +1,7 @@
 //! Regular tracking: from cell to cell, the optical thickness of each in closed form.
 
 use crate::root::crossing;
-use crate::theory::{HIGHEST_MOMENT, unweighted_collided, unweighted_escaped};
+use crate::theory::{HIGHEST_MOMENT, powers, unweighted_collided, unweighted_escaped};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{Cells, Extinction, Integral, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -127,14 +127,27 @@ impl<F: Cells> ClosedForm<F> for Regular {
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
         unweighted_escaped(quadrature, tolerance)
     }
-    fn lookups(&self, quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<f64> {
+    fn lookups(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        _tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]> {
         let field = quadrature.field();
-        let (mut entered, mut tau) = (0.0, 0.0_f64);
+        let mut moments = [0.0; HIGHEST_MOMENT];
+        let mut score = |number: f64, probability: f64| {
+            for (moment, power) in moments.iter_mut().zip(powers(number)) {
+                *moment += probability * power;
+            }
+        };
+        let (mut passed, mut tau) = (0.0, 0.0_f64);
         for (from, to) in cells(field) {
-            entered += (-tau).exp();
-            tau += Cell::look_up(field, from, to).thickness();
+            passed += 2.0;
+            let thickness = Cell::look_up(field, from, to).thickness();
+            score(passed + 2.0, (-tau).exp() * -(-thickness).exp_m1());
+            tau += thickness;
         }
-        Some(2.0 * entered - 2.0 * (-tau).exp_m1())
+        score(passed, (-tau).exp());
+        Some(moments)
     }
 }
 
@@ -222,7 +235,7 @@ mod tests {
         let mut quadrature = RayQuadrature::new(&field, &[]);
         let expected = 2.0 * (1.0 + 2.0 * (-1.0_f64).exp()) + 2.0 * (1.0 - (-1.5_f64).exp());
         let found = Regular.lookups(&mut quadrature, Tolerance::TIGHT).unwrap();
-        assert!((found - expected).abs() < 1e-14);
+        assert!((found[0] - expected).abs() < 1e-14);
     }
 
     #[test]

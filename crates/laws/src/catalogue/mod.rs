@@ -2,6 +2,7 @@
 
 mod estimators;
 mod exact;
+mod freeflight;
 mod media;
 mod single_particle;
 mod specimen;
@@ -18,6 +19,8 @@ pub enum Law {
     Variance,
     /// A biased baseline has the expectation that its theory states. Its bias is told, not judged.
     OwnExpectation,
+    /// Weighted flights integrate any test function against σ_t T; their expected look-ups.
+    FreeFlight,
     /// szirmay-kalos-2017 eq. 8, by exact algebra.
     Collision,
     /// A wrong twin is rejected.
@@ -37,7 +40,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `collision/model`, `twin/name`, `hard/number name`.
+    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `collision/model`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
@@ -76,7 +79,7 @@ impl Check {
     #[must_use]
     pub fn samples(&self, effort: Effort) -> u64 {
         match (effort, self.law) {
-            (Effort::Full, Law::Transmittance | Law::Variance | Law::OwnExpectation) => {
+            (Effort::Full, Law::Transmittance | Law::Variance | Law::OwnExpectation | Law::FreeFlight) => {
                 6 * self.quick_samples
             }
             _ => self.quick_samples,
@@ -110,6 +113,7 @@ fn fingerprint(name: &str) -> u64 {
 pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
     checks.extend(media::on_every_medium());
+    checks.extend(freeflight::free_flights());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {
