@@ -34,7 +34,7 @@ impl<F: Extinction> ClosedForm<F> for Inversion {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         unweighted_collided(quadrature, tolerance, score)
     }

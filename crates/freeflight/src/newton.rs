@@ -44,7 +44,7 @@ impl<F: Extinction> ClosedForm<F> for Newton {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         unweighted_collided(quadrature, tolerance, score)
     }

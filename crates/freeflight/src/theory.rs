@@ -10,12 +10,13 @@ pub trait ClosedForm<F: Extinction> {
     /// E\[1{collided} (weight · score(distance))^k\] for k = 1 … 8 (index k − 1). With a score of 1, the moments of the
     /// weight of a collision; the second is then what a wasteful sampler is known by.
     ///
-    /// Where `score` jumps, the `quadrature` must have a border.
+    /// Where `score` jumps, the `quadrature` must have a border. (A trait object: nobody is in a hurry here, and the
+    /// quadrature is compiled once.)
     fn collided(
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT>;
 
     /// E\[1{escaped} weight^k\] for k = 1 … 8 (index k − 1).
@@ -35,7 +36,7 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         (**self).collided(quadrature, tolerance, score)
     }
@@ -55,7 +56,7 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
 pub(crate) fn unweighted_collided<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
-    score: impl Fn(f64) -> f64,
+    score: &dyn Fn(f64) -> f64,
 ) -> Integral<HIGHEST_MOMENT> {
     quadrature.integrate_nested(
         tolerance,
@@ -82,14 +83,14 @@ pub(crate) fn unweighted_escaped<F: Extinction>(
 pub(crate) fn lookups_of_a_walk<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
-    rates: impl Fn(f64, f64) -> [f64; 2],
+    rates: &dyn Fn(f64, f64) -> [f64; 2],
 ) -> [f64; HIGHEST_MOMENT] {
-    let ended = quadrature.integrate_nested(tolerance, &rates, |s, sigma_t, [ended, passed]| {
+    let ended = quadrature.integrate_nested(tolerance, rates, |s, sigma_t, [ended, passed]| {
         let [ending, _] = rates(s, sigma_t);
         let (_, one_more) = poisson_moments(passed);
         one_more.map(|moment| ending * (-ended).exp() * moment)
     });
-    let [all_ended, all_passed] = quadrature.integrate(tolerance, &rates).value;
+    let [all_ended, all_passed] = quadrature.integrate(tolerance, rates).value;
     let (escaped, _) = poisson_moments(all_passed);
     std::array::from_fn(|i| ended.value[i] + (-all_ended).exp() * escaped[i])
 }

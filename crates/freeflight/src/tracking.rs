@@ -121,7 +121,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         quadrature.integrate_nested(
             tolerance,
@@ -145,7 +145,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
     ) -> Option<[f64; HIGHEST_MOMENT]> {
-        Some(lookups_of_a_walk(quadrature, tolerance, |s, sigma_t| {
+        Some(lookups_of_a_walk(quadrature, tolerance, &|s, sigma_t| {
             let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; 2] };
             [self.model.scattered(r).probability, self.model.transmitted(r).probability].map(|q| sampling * q)
         }))
@@ -220,7 +220,7 @@ mod tests {
                 |_, sigma_t| [sigma_t],
                 |s, sigma_t, [tau]| [sigma_t * (-tau).exp() * score(s), (-tau).exp()],
             );
-            let found = tracking.collided(&mut quadrature, Tolerance::TIGHT, score).value;
+            let found = tracking.collided(&mut quadrature, Tolerance::TIGHT, &score).value;
             assert_relative_eq!(found[0], law.value[0], max_relative = 1e-11);
             let tau = 0.3 * values[0] + 0.7 * values[1];
             let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT);
@@ -233,7 +233,7 @@ mod tests {
         // sigma_t 1, sigma_samp 0.5, r = 2: E[W_tran²] = 3, E[W_scat²] = 6; M_2 = e^s.
         let mut quadrature = RayQuadrature::new(constant(1.0), &[]);
         let tracking = Tracking::new(Version::NonTerminating, constant(0.5));
-        let collided = tracking.collided(&mut quadrature, Tolerance::TIGHT, |_| 1.0).value[1];
+        let collided = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1];
         assert_relative_eq!(collided, 3.0 * 1.0_f64.exp_m1(), max_relative = 1e-12);
         let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT)[1];
         assert_relative_eq!(escaped, 1.0_f64.exp(), max_relative = 1e-12);

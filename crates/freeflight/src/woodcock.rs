@@ -65,7 +65,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Woodcock<R> {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         unweighted_collided(quadrature, tolerance, score)
     }
@@ -78,7 +78,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Woodcock<R> {
         tolerance: Tolerance,
     ) -> Option<[f64; HIGHEST_MOMENT]> {
         let rates = |s: f64, sigma_t: f64| [sigma_t, self.majorant.sigma_t(s) - sigma_t];
-        Some(lookups_of_a_walk(quadrature, tolerance, rates))
+        Some(lookups_of_a_walk(quadrature, tolerance, &rates))
     }
 }
 

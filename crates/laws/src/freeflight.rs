@@ -10,7 +10,7 @@ use crate::{NotFinite, Run, batch_count, batch_moments, batch_size, lookups};
 use evidence::Part;
 use fairflight_freeflight::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{
-    Counted, Cumulative, Domain, Extinction, RayQuadrature, Tolerance, Violation, Watched,
+    Counted, Cumulative, Domain, Extinction, Integral, RayQuadrature, Tolerance, Violation, Watched,
 };
 use fairflight_sources::Seeded;
 use fairflight_stats::{ClosedMoments, Moments, Reference, Scores, judge, kolmogorov_smirnov};
@@ -68,17 +68,10 @@ impl FlightExpectation {
         let length = quadrature.field().length();
         // Where the indicator jumps.
         quadrature.split_at(&[0.5 * length]);
-        let score = move |s: f64, function: TestFunction| function(s / length);
-        let means = quadrature.integrate_nested(
-            tolerance,
-            |_, sigma_t| [sigma_t],
-            |s, sigma_t, [tau]| {
-                TEST_FUNCTIONS.map(|(_, function)| sigma_t * (-tau).exp() * score(s, function))
-            },
-        );
+        let means = law(quadrature, tolerance);
         let collided = std::array::from_fn(|i| {
             let (name, function) = TEST_FUNCTIONS[i];
-            let moments = sampler.collided(quadrature, tolerance, |s| score(s, function)).value;
+            let moments = sampler.collided(quadrature, tolerance, &|s| function(s / length)).value;
             Reference {
                 mean: means.value[i],
                 error: means.error[i],
@@ -109,6 +102,19 @@ impl FlightExpectation {
         let up_to = |s: f64| -(-self.thickness.at(s)[0]).exp_m1();
         (up_to(s) / up_to(self.length)).clamp(0.0, 1.0)
     }
+}
+
+/// ∫ σ_t T g ds for each test function g: the law itself, whatever the sampler.
+fn law<F: Extinction>(
+    quadrature: &mut RayQuadrature<F>,
+    tolerance: Tolerance,
+) -> Integral<{ TEST_FUNCTIONS.len() }> {
+    let length = quadrature.field().length();
+    quadrature.integrate_nested(
+        tolerance,
+        |_, sigma_t| [sigma_t],
+        |s, sigma_t, [tau]| TEST_FUNCTIONS.map(|(_, function)| sigma_t * (-tau).exp() * function(s / length)),
+    )
 }
 
 /// The values that a score can have; `is_indicator`: of a test function that is 0 or 1.

@@ -54,8 +54,8 @@ pub(super) fn free_flights() -> Vec<Check> {
     // Section 3.3: negative extinction, for which only weights are left.
     let signed = PiecewiseConstant::new(vec![0.0, 1.0, 2.0, 3.5], vec![1.0, -0.5, 0.4]).expect(LAWFUL);
     let signed = Medium::new("piecewise_constant_negative", signed, 1.0, (1.0, [1.0, 0.8]));
-    checks.push(signed.tracking("tracking_non_terminating", Version::NonTerminating, 1.5));
-    checks.push(signed.tracking("tracking_adaptive", Version::Adaptive, 1.5));
+    checks.push(signed.tracking("tracking_non_terminating", Version::NonTerminating, 3.0));
+    checks.push(signed.tracking("tracking_adaptive", Version::Adaptive, 3.0));
     checks
 }
 
