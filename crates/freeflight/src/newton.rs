@@ -13,8 +13,9 @@ use fairflight_sources::UniformSource;
 ///
 /// **Moments.** E\[weight^k; collided\] = 1 − T, E\[weight^k; escaped\] = T.
 ///
-/// **Cost.** One look-up and one closed form per step, typically four to eight; no closed form of their number. None for
-/// a flight that escapes.
+/// **Cost.** One look-up and one closed form per step; no closed form of their number. Along eq. 21's sphere a collision
+/// takes 9.4 steps on average, half of them at most 8, none of a million more than 65: the long ones end where σ_t nearly
+/// vanishes, the rounding of τ hides the root, and halving is all that is left. No look-up for a flight that escapes.
 ///
 /// **Domain.** σ_t ≥ 0: τ does not decrease. σ_t = 0 on a stretch is admitted; no flight ends inside it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
