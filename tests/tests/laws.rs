@@ -43,6 +43,7 @@ macro_rules! media {
 
 media!(
     collision,
+    phase,
     constant,
     piecewise_constant,
     piecewise_constant_negative,

@@ -21,17 +21,25 @@ use fairflight_sources::UniformSource;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Newton;
 
+impl Newton {
+    /// The distance at which the optical thickness from the start is `depth`, below the `total` of the profile.
+    #[inline]
+    #[must_use]
+    pub fn invert<F: OpticalThickness>(&self, field: &F, depth: f64, total: f64) -> f64 {
+        let length = field.length();
+        // Exact for a constant field.
+        let guess = length * (depth / total);
+        crossing(0.0, length, guess, |s| (field.optical_thickness(0.0, s) - depth, field.sigma_t(s)))
+    }
+}
+
 impl<F: OpticalThickness> FreeFlight<F> for Newton {
     #[inline]
     fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
-        let (depth, length) = (source.next_exponential(), field.length());
-        let total = field.optical_thickness(0.0, length);
+        let depth = source.next_exponential();
+        let total = field.optical_thickness(0.0, field.length());
         let inside = depth < total;
-        Flight::unweighted(inside.then(|| {
-            // Exact for a constant field.
-            let guess = length * (depth / total);
-            crossing(0.0, length, guess, |s| (field.optical_thickness(0.0, s) - depth, field.sigma_t(s)))
-        }))
+        Flight::unweighted(inside.then(|| self.invert(field, depth, total)))
     }
 
     #[inline]

@@ -1,7 +1,8 @@
 //! The scattering medium of a scene.
 
-use crate::Spectrum;
+use crate::{Connection, Spectrum};
 use fairflight_media::{Bounds, Line, Medium, Ray};
+use glam::DVec3;
 
 /// A medium in its bounds, with how much and whereto it scatters. Outside the bounds is vacuum.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +23,9 @@ impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
     /// `length` ends the ray; `line.direction` is of unit length.
     #[inline]
     pub fn enter(&self, line: &Line, length: Option<f64>) -> Option<Ray<&M>> {
+        if self.bounds.certainly_misses(line.origin, line.direction) {
+            return None;
+        }
         // A line of finite numbers and of unit direction is what the constructors of cameras and lights guarantee.
         let clip = self.bounds.clip(line.origin, line.direction, length).ok().flatten()?;
         (clip.length > 0.0).then(|| Ray::new(&self.medium, &clip))
@@ -31,6 +35,16 @@ impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
     #[inline]
     pub fn inside(&self, line: Line) -> Ray<&M> {
         Ray::new(&self.medium, &self.bounds.clip_inside(line))
+    }
+
+    /// The ray from a point in the volume to a light, up to the light or to the end of the bounds, as a profile.
+    #[inline]
+    pub fn towards(&self, point: DVec3, connection: &Connection<C>) -> Ray<&M> {
+        let mut clip = self.bounds.clip_inside(Line { origin: point, direction: connection.towards });
+        if let Some(distance) = connection.distance {
+            clip.length = clip.length.min(distance);
+        }
+        Ray::new(&self.medium, &clip)
     }
 
     /// The same volume with another view of its medium (counted, observed), its phase function by reference.

@@ -9,6 +9,7 @@ mod freeflight;
 mod line_integral;
 mod logarithm;
 mod majorant;
+mod phase;
 mod sampling;
 mod trial;
 mod variance;
@@ -105,5 +106,6 @@ pub fn twins() -> Vec<Twin> {
     all.extend(line_integral::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
+    all.extend(phase::twins());
     all
 }
