@@ -53,6 +53,7 @@ media!(
     perlin,
     voxels,
     expression,
+    freeflight,
 );
 
 #[test]

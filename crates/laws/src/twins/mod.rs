@@ -5,6 +5,7 @@
 
 mod collision_weights;
 mod control;
+mod freeflight;
 mod line_integral;
 mod logarithm;
 mod majorant;
@@ -99,6 +100,7 @@ impl std::fmt::Debug for Twin {
 pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
     all.extend(control::twins());
+    all.extend(freeflight::twins());
     all.extend(majorant::twins());
     all.extend(sampling::twins());
     all.extend(line_integral::twins());
