@@ -14,6 +14,7 @@ mod list;
 mod verify;
 
 pub mod experiment;
+pub mod image;
 pub mod measure;
 pub mod plan;
 pub mod reference;
