@@ -25,8 +25,10 @@ mod expression;
 mod extinction;
 mod gradient_noise;
 mod homogeneous;
+mod inside;
 mod lattice_planes;
 mod medium;
+mod observed;
 mod perlin;
 pub mod phase;
 mod piecewise_constant;
@@ -47,6 +49,7 @@ pub use extinction::{
 };
 pub use homogeneous::Homogeneous;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
+pub use observed::Observed;
 pub use perlin::{Perlin, PerlinParameters};
 pub use phase::{PhaseFunction, Scattered};
 pub use piecewise_constant::PiecewiseConstant;

@@ -36,6 +36,11 @@ impl<M: Medium> Ray<M> {
         self.world.at(s)
     }
 
+    /// The ray in world space, from the start of the profile.
+    pub fn world_line(&self) -> &Line {
+        &self.world
+    }
+
     /// The ray in the medium's own coordinates.
     pub fn local_line(&self) -> &Line {
         &self.local

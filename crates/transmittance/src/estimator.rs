@@ -19,14 +19,34 @@ pub trait TransmittanceEstimator<F: Extinction> {
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool;
 }
 
+/// A point at which a walk met matter, real or virtual.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interaction {
+    /// Where \[length\].
+    pub distance: f64,
+    /// σ_t there \[1/length\].
+    pub sigma_t: f64,
+    /// The weight of the walk *behind* it, without the control's transmittance \[1\]; 0 where the walk ended here.
+    pub weight: f64,
+}
+
+impl Interaction {
+    /// The weight of a walk at the distance `s`, without the control's transmittance: that behind its last interaction point
+    /// at or before `s`, 1 before the first.
+    #[must_use]
+    pub fn weight_at(walk: &[Self], s: f64) -> f64 {
+        let behind = walk.partition_point(|point| point.distance <= s);
+        if behind == 0 { 1.0 } else { walk[behind - 1].weight }
+    }
+}
+
 /// A random estimate of transmittance as a function of distance.
 ///
-/// **Law.** For every s in the profile, `E[T(s)] = exp(−∫_0^s σ_t)`, with T(s) the weight of the last entry at or before
-/// s times the control's transmittance up to s.
+/// **Law.** For every s in the profile, `E[T(s)] = exp(−∫_0^s σ_t)`, with T(s) = [`Interaction::weight_at`] s times the
+/// control's transmittance up to s.
 pub trait TransmittanceFunction<F: Extinction>: TransmittanceEstimator<F> {
-    /// Draws one walk: its interaction points in increasing order, each with the weight of the walk *behind* it, without
-    /// the control's transmittance. Appends to `walk`.
-    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<(f64, f64)>);
+    /// Draws one walk: its interaction points in increasing order. Appends to `walk`.
+    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<Interaction>);
 
     /// The control's transmittance up to `s`.
     fn main_transmittance(&self, s: f64) -> f64;

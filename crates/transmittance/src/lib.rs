@@ -10,6 +10,7 @@
 //! | [`Tracking`] with the double particle model | szirmay-kalos-2017 4.2 | nothing (ratio and residual ratio tracking are special cases) |
 //! | [`Tracking`] with the single particle model | szirmay-kalos-2017 eq. 9 | the domain of its version |
 //! | [`LineIntegral`] | raab-2008 algorithm 2 | a majorant |
+//! | [`Regular`] | the integral itself | a closed-form optical thickness |
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
 //!
 //! ```
@@ -33,16 +34,18 @@ mod explorers;
 mod line_integral;
 mod product_law;
 mod ray_marching;
+mod regular;
 mod signed_product;
 mod theory;
 mod tracking;
 mod woodcock;
 
-pub use estimator::{TransmittanceEstimator, TransmittanceFunction};
+pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
 pub use line_integral::{LineIntegral, NoSplits};
 pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
 pub use ray_marching::{NoSteps, Offset, RayMarching};
+pub use regular::Regular;
 pub use signed_product::SignedProduct;
 pub use theory::{ClosedForm, Theory};
 pub use tracking::Tracking;

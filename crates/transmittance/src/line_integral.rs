@@ -1,6 +1,6 @@
-//! Raab, Seibert & Keller's line integral (raab-2008 algorithm 2), for c = 1 at the far end and 0 on the way: transmittance.
+//! Raab, Seibert & Keller's line integral (raab-2008 algorithm 2), for transmittance and for any other integral along a ray.
 
-use crate::woodcock::{escapes, expected_lookups};
+use crate::woodcock::{collides, expected_lookups};
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Cumulative, Majorant, RayQuadrature, Tolerance, adaptive_integral};
 use fairflight_sources::UniformSource;
@@ -48,25 +48,55 @@ fn collision_probability<F: Majorant>(field: &F) -> f64 {
     -(-field.majorant() * field.length()).exp_m1()
 }
 
-impl<F: Majorant> TransmittanceEstimator<F> for LineIntegral {
+impl LineIntegral {
+    /// Estimates any transmittance-weighted integral along the profile (raab-2008 eq. 13),
+    ///
+    /// > C = c_∂V(length) T(length) + ∫ c_V(s) T(s) ds,
+    ///
+    /// by the same flights: one that collides at s scores p_V c_V(s)/(n σ_t(s)), one that escapes p_V c_∂V/n (step 6). `end`
+    /// is c_∂V. `collision(s, σ_t(s), source)` is c_V(s)/σ_t(s), the score of a collision; for in-scattering it is albedo ·
+    /// in-scattered radiance, finite where σ_t vanishes since no flight collides there.
+    ///
+    /// T is a number or a colour: whatever can be added, and multiplied by a number.
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    pub fn integrate<F, S, T>(
+        &self,
+        field: &F,
+        source: &mut S,
+        end: T,
+        mut collision: impl FnMut(f64, f64, &mut S) -> T,
+    ) -> T
+    where
+        F: Majorant,
+        S: UniformSource + ?Sized,
+        T: Copy + std::ops::AddAssign + std::ops::Mul<f64, Output = T>,
+    {
         let p_volume = collision_probability(field);
         if p_volume == 0.0 {
-            return 1.0;
+            return end;
         }
-        let p_surface = (-field.majorant() * field.length()).exp();
+        let mut scores = end * 0.0;
         let n = f64::from(self.splits);
         let shift = source.next_uniform();
-        let mut escaped = 0_u32;
         for k in 0..self.splits {
             let u = (f64::from(k) + shift) / n * p_volume;
             // Rounding may put u on p_V itself: such a flight counts as escaped, at a probability below 2^-50.
-            if escapes(field, 0.0, -(-u).ln_1p(), source) {
-                escaped += 1;
-            }
+            scores += match collides(field, -(-u).ln_1p(), source) {
+                Some((s, sigma_t)) => collision(s, sigma_t, source),
+                None => end,
+            };
         }
-        p_surface + p_volume * f64::from(escaped) / n
+        let mut sum = end * (-field.majorant() * field.length()).exp();
+        sum += scores * (p_volume / n);
+        sum
+    }
+}
+
+/// Transmittance is the integral with c_∂V = 1 and c_V = 0.
+impl<F: Majorant> TransmittanceEstimator<F> for LineIntegral {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        self.integrate(field, source, 1.0, |_, _, _| 0.0)
     }
 
     #[inline]

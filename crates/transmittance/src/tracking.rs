@@ -3,7 +3,9 @@
 //! Ratio tracking is the double particle model without control, residual ratio tracking (novak-2014) the same with a
 //! constant one; neither needs a majorant here.
 
-use crate::{ClosedForm, ProductLaw, SignedProduct, Theory, TransmittanceEstimator, TransmittanceFunction};
+use crate::{
+    ClosedForm, Interaction, ProductLaw, SignedProduct, Theory, TransmittanceEstimator, TransmittanceFunction,
+};
 use fairflight_collision::CollisionModel;
 use fairflight_media::{Extinction, InvertOpticalThickness, OpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -71,25 +73,26 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
         (sigma_t - self.control.sigma_t(s)) / self.sampling.sigma_t(s)
     }
 
-    /// One walk. `visit` sees each interaction point and the weight behind it; the walk's weight at the end is returned,
+    /// One walk. `visit` sees each interaction point, σ_t there and the weight behind it; the walk's weight at the end is returned,
     /// or `None` where it ended before.
     #[inline]
     fn walk<F: Extinction, S: UniformSource + ?Sized>(
         &self,
         field: &F,
         source: &mut S,
-        mut visit: impl FnMut(f64, Option<&SignedProduct>),
+        mut visit: impl FnMut(f64, f64, Option<&SignedProduct>),
     ) -> Option<SignedProduct> {
         let mut weight = SignedProduct::ONE;
         let mut s = 0.0;
         while let Some(next) = self.sampling.invert(s, source.next_exponential()) {
             s = next;
-            let Some(transmitted) = self.model.transmit(self.ratio(s, field.sigma_t(s)), source) else {
-                visit(s, None);
+            let sigma_t = field.sigma_t(s);
+            let Some(transmitted) = self.model.transmit(self.ratio(s, sigma_t), source) else {
+                visit(s, sigma_t, None);
                 return None;
             };
             weight.multiply(transmitted);
-            visit(s, Some(&weight));
+            visit(s, sigma_t, Some(&weight));
         }
         Some(weight)
     }
@@ -105,7 +108,7 @@ where
     #[inline]
     fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
-        match self.walk(field, source, |_, _| {}) {
+        match self.walk(field, source, |_, _, _| {}) {
             Some(weight) => weight.times_exp(-self.main_thickness),
             None => 0.0,
         }
@@ -129,9 +132,10 @@ where
     C: OpticalThickness,
     R: InvertOpticalThickness,
 {
-    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<(f64, f64)>) {
-        self.walk(field, source, |s, weight| {
-            walk.push((s, weight.map_or(0.0, |weight| weight.times_exp(0.0))));
+    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<Interaction>) {
+        self.walk(field, source, |distance, sigma_t, weight| {
+            let weight = weight.map_or(0.0, |weight| weight.times_exp(0.0));
+            walk.push(Interaction { distance, sigma_t, weight });
         });
     }
 

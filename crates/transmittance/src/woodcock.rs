@@ -22,7 +22,10 @@ pub struct Woodcock;
 impl<F: Majorant> TransmittanceEstimator<F> for Woodcock {
     #[inline]
     fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
-        if escapes(field, 0.0, source.next_exponential(), source) { 1.0 } else { 0.0 }
+        match collides(field, source.next_exponential(), source) {
+            Some(_) => 0.0,
+            None => 1.0,
+        }
     }
 
     #[inline]
@@ -31,28 +34,28 @@ impl<F: Majorant> TransmittanceEstimator<F> for Woodcock {
     }
 }
 
-/// Follows a flight from `from`, the first step of which has the optical length `first` in the majorant; whether it leaves
-/// the profile.
+/// Follows a flight, the first step of which has the optical length `first` in the majorant: where it collides with matter,
+/// and σ_t there; `None` if it leaves the profile.
 #[inline]
-pub(crate) fn escapes<F: Majorant, S: UniformSource + ?Sized>(
+pub(crate) fn collides<F: Majorant, S: UniformSource + ?Sized>(
     field: &F,
-    from: f64,
     first: f64,
     source: &mut S,
-) -> bool {
+) -> Option<(f64, f64)> {
     let majorant = field.majorant();
     let mean_free_path = 1.0 / majorant;
     let mut depth = first;
-    let mut s = from;
+    let mut s = 0.0;
     loop {
         // majorant = 0: the step is infinite, or NaN where depth = 0; neither is inside the profile.
         s += depth * mean_free_path;
         let inside = s < field.length();
         if !inside {
-            return true;
+            return None;
         }
-        if source.next_uniform() * majorant < field.sigma_t(s) {
-            return false;
+        let sigma_t = field.sigma_t(s);
+        if source.next_uniform() * majorant < sigma_t {
+            return Some((s, sigma_t));
         }
         depth = source.next_exponential();
     }

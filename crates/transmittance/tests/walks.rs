@@ -4,8 +4,8 @@ use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{Bounded, Constant, Counted, PiecewiseConstant, Vacuum};
 use fairflight_sources::{Counting, LARGEST_VARIATE, Scripted};
 use fairflight_transmittance::{
-    Explorers, LineIntegral, Offset, RayMarching, Tracking, TransmittanceEstimator, TransmittanceFunction,
-    Woodcock,
+    Explorers, Interaction, LineIntegral, Offset, RayMarching, Tracking, TransmittanceEstimator,
+    TransmittanceFunction, Woodcock,
 };
 
 /// The variate whose exponential is `depth`.
@@ -45,8 +45,10 @@ fn a_traced_walk_is_the_estimated_walk() {
     let script = [depth(1.0), depth(2.0), depth(5.0)];
     let mut walk = Vec::new();
     estimator.trace(&field, &mut Scripted::new(script), &mut walk);
-    let (last, weight) = walk[1];
-    assert!((last - 1.5).abs() < 1e-12);
+    let Interaction { distance, weight, sigma_t } = walk[1];
+    assert!((distance - 1.5).abs() < 1e-12);
+    assert_eq!((sigma_t, walk[0].sigma_t), (0.25, 1.0));
+    assert_eq!([0.2, 0.7, 1.9].map(|s| Interaction::weight_at(&walk, s)), [1.0, walk[0].weight, weight]);
     let whole: f64 = TransmittanceFunction::<PiecewiseConstant>::main_transmittance(&estimator, 2.0) * weight;
     assert!((whole - estimator.estimate(&field, &mut Scripted::new(script))).abs() < 1e-15);
 }

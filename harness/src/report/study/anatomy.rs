@@ -1,12 +1,13 @@
 //! One ray taken apart: szirmay-kalos-2017 fig. 5.
 
 use super::laws::SharedLaws;
-use super::walk::{LookUp, Trace, WALK_EXPLORERS, distances, walker, weight_at};
+use super::walk::{LookUp, Trace, WALK_EXPLORERS, distances, walker};
 use super::{Run, Study, Subject};
 use crate::Failure;
 use crate::report::result::Anatomy;
 use fairflight_media::{Extinction, OpticalThickness};
 use fairflight_sources::Seeded;
+use fairflight_transmittance::Interaction;
 
 /// Points at which the curves are given.
 const POINTS: usize = 801;
@@ -19,8 +20,6 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
     let walk = subject.profile.with(Trace { walker: &walker, walks: 1, source }).remove(0);
     let running = laws.running(subject, control, sigma_samp);
     let s = distances(subject.facts.length, POINTS);
-    let stops: Vec<f64> = walk.iter().map(|(s, _)| *s).collect();
-    let found = subject.profile.with(LookUp(&stops));
     Ok(Anatomy {
         sigma_samp,
         sigma_t: subject.profile.with(LookUp(&s)),
@@ -28,10 +27,10 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
         transmittance: s.iter().map(|&s| (-running.at(s)[0]).exp()).collect(),
         sampled: s
             .iter()
-            .map(|&s| (-control.optical_thickness(0.0, s)).exp() * weight_at(&walk, s))
+            .map(|&s| (-control.optical_thickness(0.0, s)).exp() * Interaction::weight_at(&walk, s))
             .collect(),
         explorers: control.points().map(|(s, sigma_t)| [s, sigma_t]).collect(),
-        interactions: stops.into_iter().zip(found).map(|(s, sigma_t)| [s, sigma_t]).collect(),
+        interactions: walk.iter().map(|point| [point.distance, point.sigma_t]).collect(),
         s,
     })
 }

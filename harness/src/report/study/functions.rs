@@ -1,12 +1,13 @@
 //! Sample transmittance functions with the band of their standard deviation: szirmay-kalos-2017 fig. 8.
 
 use super::laws::SharedLaws;
-use super::walk::{Trace, WALK_EXPLORERS, distances, walker, weight_at};
+use super::walk::{Trace, WALK_EXPLORERS, distances, walker};
 use super::{Run, Study, Subject};
 use crate::Failure;
 use crate::report::result::SampleFunctions;
 use fairflight_media::OpticalThickness;
 use fairflight_sources::Seeded;
+use fairflight_transmittance::Interaction;
 
 /// Points at which the curves are given.
 const POINTS: usize = 401;
@@ -21,8 +22,9 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
     let running = laws.running(subject, walker.control(), sigma_samp);
     let s = distances(subject.facts.length, POINTS);
     let main: Vec<f64> = s.iter().map(|&s| (-walker.control().optical_thickness(0.0, s)).exp()).collect();
-    let sampled =
-        |walk: &Vec<(f64, f64)>| s.iter().zip(&main).map(|(&s, main)| main * weight_at(walk, s)).collect();
+    let sampled = |walk: &Vec<Interaction>| {
+        s.iter().zip(&main).map(|(&s, main)| main * Interaction::weight_at(walk, s)).collect()
+    };
     let (transmittance, standard_deviation) = s
         .iter()
         .map(|&s| {

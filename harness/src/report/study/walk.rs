@@ -6,7 +6,7 @@ use crate::plan::{Field, FieldJob, KnownField};
 use fairflight_collision::DoubleParticle;
 use fairflight_media::Constant;
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{Explorers, Tracking, TransmittanceFunction};
+use fairflight_transmittance::{Explorers, Interaction, Tracking, TransmittanceFunction};
 
 /// Explorer points of the walks that are shown one by one (fig. 5 and 8).
 pub(super) const WALK_EXPLORERS: usize = 20;
@@ -53,7 +53,7 @@ impl FieldJob for LookUp<'_> {
     }
 }
 
-/// `walks` walks from one source: interaction points with the weight behind each.
+/// `walks` walks from one source: their interaction points.
 pub(super) struct Trace<'a, S> {
     pub(super) walker: &'a Walker,
     pub(super) walks: usize,
@@ -61,7 +61,7 @@ pub(super) struct Trace<'a, S> {
 }
 
 impl<S: UniformSource> FieldJob for Trace<'_, S> {
-    type Output = Vec<Vec<(f64, f64)>>;
+    type Output = Vec<Vec<Interaction>>;
     fn run<F: KnownField>(mut self, field: &F) -> Self::Output
     where
         for<'a> &'a F: Field,
@@ -74,12 +74,6 @@ impl<S: UniformSource> FieldJob for Trace<'_, S> {
             })
             .collect()
     }
-}
-
-/// The weight of a walk at `s`, without the control: that behind its last interaction point at or before `s`.
-pub(super) fn weight_at(walk: &[(f64, f64)], s: f64) -> f64 {
-    let before = walk.partition_point(|(point, _)| *point <= s);
-    if before == 0 { 1.0 } else { walk[before - 1].1 }
 }
 
 /// `count` equidistant distances from 0 to `length`, both included.

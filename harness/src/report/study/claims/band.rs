@@ -11,9 +11,10 @@ use crate::plan::{Field, FieldJob, KnownField};
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::study::Subject;
 use crate::report::study::laws::SharedLaws;
-use crate::report::study::walk::{Trace, WALK_EXPLORERS, Walker, walker, weight_at};
+use crate::report::study::walk::{Trace, WALK_EXPLORERS, Walker, walker};
 use fairflight_media::{Extinction, OpticalThickness};
 use fairflight_sources::{Seeded, UniformSource};
+use fairflight_transmittance::Interaction;
 use rayon::prelude::*;
 
 /// Distances at which the band is checked, in units of the ray's length.
@@ -112,7 +113,8 @@ fn coverage(evidence: &Evidence<'_>, subject: &Subject) -> Result<Vec<Coverage>,
         .zip(PLACES)
         .enumerate()
         .map(|(i, (place, at))| {
-            let within = traced.iter().filter(|walk| place.holds(weight_at(walk, place.s))).count();
+            let within =
+                traced.iter().filter(|walk| place.holds(Interaction::weight_at(walk, place.s))).count();
             let draws = walks;
             let source = Seeded::new(seed(i as u64));
             let by_law = subject.profile.with(Unordered { walker: &walker, place, draws, source });

@@ -1,0 +1,95 @@
+//! Rays that start inside the bounds: those of a walk after its first collision.
+
+use crate::{Bounds, Clip, Line};
+use glam::DVec3;
+
+impl Bounds {
+    /// The distance from `point`, in the bounds or beside them by rounding, to where a particle that travels along the unit
+    /// vector `direction` leaves them \[length\]; 0 where it does at once.
+    #[inline]
+    #[must_use]
+    pub fn exit_distance(&self, point: DVec3, direction: DVec3) -> f64 {
+        match *self {
+            Self::Sphere { center, radius } => {
+                let offset = point - center;
+                let along = offset.dot(direction);
+                let inside = radius * radius - offset.length_squared();
+                let half = (along * along + inside).max(0.0).sqrt();
+                // −along + half, written for along > 0 so that it does not cancel near the surface.
+                let exit = if along > 0.0 { inside / (along + half) } else { half - along };
+                exit.max(0.0)
+            }
+            Self::Box { min, max } => {
+                let mut exit = f64::INFINITY;
+                for axis in 0..3 {
+                    let d = direction[axis];
+                    if d != 0.0 {
+                        let face = if d > 0.0 { max[axis] } else { min[axis] };
+                        exit = exit.min((face - point[axis]) / d);
+                    }
+                }
+                exit.max(0.0)
+            }
+        }
+    }
+
+    /// The rest of a ray that starts inside, as a clip of its own.
+    #[inline]
+    #[must_use]
+    pub fn clip_inside(&self, line: Line) -> Clip {
+        Clip { line, entry_distance: 0.0, length: self.exit_distance(line.origin, line.direction) }
+    }
+
+    /// Whether a point lies in the bounds, their surface included.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        match *self {
+            Self::Sphere { center, radius } => point.distance_squared(center) <= radius * radius,
+            Self::Box { min, max } => point.cmpge(min).all() && point.cmple(max).all(),
+        }
+    }
+
+    /// A ball that holds the bounds: its center and its radius \[length\].
+    #[must_use]
+    pub fn enclosing_ball(&self) -> (DVec3, f64) {
+        match *self {
+            Self::Sphere { center, radius } => (center, radius),
+            Self::Box { min, max } => (0.5 * (min + max), 0.5 * (max - min).length()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    #[test]
+    fn the_exit_is_that_of_the_clip() {
+        let ball = Bounds::sphere(dvec3(0.0, 0.0, 10.0), 10.0).unwrap();
+        let cube = Bounds::aligned_box(DVec3::ZERO, DVec3::ONE).unwrap();
+        for i in 0..300 {
+            let t = f64::from(i);
+            let direction = dvec3(t.sin(), (1.3 * t).cos(), (0.7 * t).sin()).normalize();
+            let unit = dvec3((2.1 * t).sin(), (1.9 * t).sin(), (0.3 * t).cos());
+            for (bounds, point) in [(ball, dvec3(0.0, 0.0, 10.0) + 5.7 * unit), (cube, 0.5 + 0.5 * unit)] {
+                assert!(bounds.contains(point));
+                let clip = bounds.clip(point, direction, None).unwrap().unwrap();
+                assert!((bounds.exit_distance(point, direction) - clip.length).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn on_the_surface_it_leaves_at_once_or_crosses() {
+        let ball = Bounds::sphere(DVec3::ZERO, 1.0).unwrap();
+        assert_eq!(ball.exit_distance(DVec3::Z, DVec3::Z), 0.0);
+        assert_eq!(ball.exit_distance(DVec3::Z, -DVec3::Z), 2.0);
+        assert_eq!(ball.exit_distance(DVec3::Z * (1.0 + 1e-15), DVec3::Z), 0.0);
+        let cube = Bounds::aligned_box(DVec3::ZERO, DVec3::ONE).unwrap();
+        assert_eq!(cube.exit_distance(dvec3(1.0, 0.5, 0.5), DVec3::X), 0.0);
+        assert_eq!(cube.exit_distance(dvec3(1.0, 0.5, 0.5), dvec3(-1.0, 0.0, -0.0)), 1.0);
+        assert!(!cube.contains(dvec3(1.0 + 1e-15, 0.5, 0.5)));
+        assert_eq!(cube.enclosing_ball(), (DVec3::splat(0.5), 0.5 * 3f64.sqrt()));
+    }
+}

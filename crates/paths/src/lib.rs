@@ -1,0 +1,13 @@
+//! Radiance by walks through a medium.
+
+mod integrator;
+mod particle_tracer;
+mod sampling;
+mod shadow;
+mod walk;
+
+pub use integrator::Integrator;
+pub use particle_tracer::{Attenuation, ParticleTracer};
+pub use sampling::{NotPositive, SamplingExtinction, Uniform};
+pub use shadow::{Ratio, RayTransmittance, arriving};
+pub use walk::{End, ROULETTE_BELOW, ScatteringEvent, Walk};

@@ -1,0 +1,93 @@
+//! Particle tracing from the camera: importons (szirmay-kalos-2017 section 4.1).
+
+use crate::{End, Integrator, Ratio, RayTransmittance, SamplingExtinction, Walk, arriving};
+use fairflight_media::{Line, Medium, PhaseFunction};
+use fairflight_scene::{Lights, Spectrum, Volume};
+use fairflight_sources::UniformSource;
+
+/// Multiple scattering by importons: one walk per ray.
+///
+/// It meets the background where it leaves; every other light is connected with at each scattering event, through an unbiased
+/// estimate of transmittance by the same sampling extinction.
+///
+/// **Law.** E\[radiance\] solves the equation of transfer (raab-2008 eq. 2) in a medium without emission.
+///
+/// **Variance.** Finite while the walk is subcritical ([`Walk`]), without point lights in the medium. The connection with a point
+/// light d away weighs 1/d²: its second moment diverges where collisions can lie next to the light (raab-2008 section 4.1).
+#[derive(Debug)]
+pub struct ParticleTracer<'s, M, P, C, R> {
+    volume: &'s Volume<M, P, C>,
+    lights: &'s Lights<C>,
+    walk: Walk<R>,
+    truncated: u64,
+}
+
+impl<'s, M, P, C, R> ParticleTracer<'s, M, P, C, R> {
+    /// Traces importons through `volume`, lit by `lights`.
+    pub fn new(volume: &'s Volume<M, P, C>, lights: &'s Lights<C>, walk: Walk<R>) -> Self {
+        Self { volume, lights, walk, truncated: 0 }
+    }
+
+    /// The number of walks that were cut at their greatest number of collisions so far: each is a bias.
+    pub fn truncated(&self) -> u64 {
+        self.truncated
+    }
+}
+
+impl<M, P, C, R> Integrator<C> for ParticleTracer<'_, M, P, C, R>
+where
+    M: Medium,
+    P: PhaseFunction,
+    C: Spectrum,
+    R: SamplingExtinction,
+{
+    #[inline]
+    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+        let Self { volume, lights, walk, truncated } = self;
+        let Some(ray) = volume.enter(line, None) else {
+            return lights.background.radiance(line.direction);
+        };
+        let mut radiance = C::ZERO;
+        let end = walk.simulate(volume, ray, source, |event, source| {
+            for light in &lights.sources {
+                let Some(connection) = light.connect(event.point) else { continue };
+                let shadow = &mut Ratio(walk.sampling());
+                let arriving = arriving(volume, event.point, &connection, shadow, source);
+                let phase = volume.phase.eval(event.incident.dot(connection.towards));
+                radiance += event.energy * arriving * phase;
+            }
+        });
+        match end {
+            End::Escaped { direction, energy } => radiance += energy * lights.background.radiance(direction),
+            End::Absorbed => {}
+            End::Truncated => *truncated += 1,
+        }
+        radiance
+    }
+}
+
+/// Transmittance of the ray to the background, and no scattering at all (section 4.2).
+#[derive(Debug)]
+pub struct Attenuation<'s, M, P, C, T> {
+    volume: &'s Volume<M, P, C>,
+    lights: &'s Lights<C>,
+    estimator: T,
+}
+
+impl<'s, M, P, C, T> Attenuation<'s, M, P, C, T> {
+    /// The background of `lights` seen through `volume`.
+    pub fn new(volume: &'s Volume<M, P, C>, lights: &'s Lights<C>, estimator: T) -> Self {
+        Self { volume, lights, estimator }
+    }
+}
+
+impl<M: Medium, P, C: Spectrum, T: RayTransmittance<M>> Integrator<C> for Attenuation<'_, M, P, C, T> {
+    #[inline]
+    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+        let background = self.lights.background.radiance(line.direction);
+        match self.volume.enter(line, None) {
+            Some(ray) => background * self.estimator.estimate(&ray, source),
+            None => background,
+        }
+    }
+}

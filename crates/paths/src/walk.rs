@@ -1,0 +1,155 @@
+//! SimulateParticle (szirmay-kalos-2017 section 4.1): one light particle until it leaves the medium or ends.
+
+use crate::SamplingExtinction;
+use fairflight_collision::{Albedo, Outcome, SingleOutcome, SingleParticle, Version};
+use fairflight_media::{Extinction, Line, Medium, PhaseFunction, Ray};
+use fairflight_scene::{Spectrum, Volume};
+use fairflight_sources::UniformSource;
+use glam::DVec3;
+
+/// How particles walk: photons and importons alike.
+///
+/// ```text
+/// while the particle is inside and has energy
+///     s += free flight of sigma_samp                                     (eq. 4)
+///     r = sigma_t / sigma_samp
+///     scattered, transmitted or absorbed, with energies of eq. 9
+///     if scattered: a new direction by the phase function
+/// ```
+///
+/// **Law.** The expected energy that is scattered per volume, and that leaves, is that of the medium, for every σ_samp that is
+/// positive where the extinction is. Above r = 2/(1 + a) the absolute energy grows at each collision: in a medium where that
+/// happens often enough there is no second moment, later no first one (`second_moment_growth`).
+///
+/// **Colour.** The decisions are made by the greatest albedo; each channel carries the ratio of its own to that one, at most 1.
+///
+/// **Roulette.** SimulateParticle never ends a non-terminating particle in an endless medium. Here one whose energy has fallen
+/// below [`ROULETTE_BELOW`] survives with probability |E|/ROULETTE_BELOW, with that energy: no bias, and what it adds to the
+/// second moment of a score X is at most ROULETTE_BELOW · E\[|X|\] of the walks that got there.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk<R> {
+    version: Version,
+    sampling: R,
+    max_collisions: u64,
+}
+
+/// The energy, relative to where the particle started, below which roulette is played.
+pub const ROULETTE_BELOW: f64 = 1.0 / 256.0;
+
+/// How a walk ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End<C> {
+    /// It left the medium.
+    Escaped {
+        /// Its direction of travel.
+        direction: DVec3,
+        /// Its energy relative to that at the start.
+        energy: C,
+    },
+    /// It was absorbed, or lost at roulette.
+    Absorbed,
+    /// It met the greatest number of collisions that it was allowed: what it had left is missing, a bias.
+    Truncated,
+}
+
+/// A particle that was just scattered, before its new direction is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScatteringEvent<C> {
+    /// Where.
+    pub point: DVec3,
+    /// The direction of travel before.
+    pub incident: DVec3,
+    /// Its energy behind the collision, relative to that at the start.
+    pub energy: C,
+}
+
+impl<R: SamplingExtinction> Walk<R> {
+    /// Walks with the collisions of `version`, at the rate of `sampling`.
+    pub fn new(version: Version, sampling: R) -> Self {
+        Self { version, sampling, max_collisions: u64::MAX }
+    }
+
+    /// The same, but no more than `max_collisions` collisions each: a bias where it happens.
+    #[must_use]
+    pub fn with_max_collisions(self, max_collisions: u64) -> Self {
+        Self { max_collisions, ..self }
+    }
+
+    /// The sampling extinction.
+    pub fn sampling(&self) -> &R {
+        &self.sampling
+    }
+
+    /// The version.
+    pub fn version(&self) -> Version {
+        self.version
+    }
+
+    /// The collisions of the walk in a volume: by its greatest albedo, and the ratio of each channel's to that.
+    pub fn collisions<M, P, C: Spectrum>(&self, volume: &Volume<M, P, C>) -> (SingleParticle, C) {
+        let greatest = volume.albedo.max_channel();
+        // A gain is left to the energies: probabilities are those of an albedo of 1.
+        let albedo =
+            Albedo::new(greatest.min(1.0)).expect("an albedo is checked to be a number of at least 0");
+        let ratio = if albedo.get() > 0.0 { volume.albedo * (1.0 / albedo.get()) } else { C::ZERO };
+        (SingleParticle { version: self.version, albedo }, ratio)
+    }
+
+    /// Follows a particle of energy 1 from the start of `ray`. `scattered` sees each scattering event.
+    #[inline]
+    pub fn simulate<'v, M, P, C, S>(
+        &self,
+        volume: &'v Volume<M, P, C>,
+        mut ray: Ray<&'v M>,
+        source: &mut S,
+        mut scattered: impl FnMut(ScatteringEvent<C>, &mut S),
+    ) -> End<C>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        S: UniformSource + ?Sized,
+    {
+        let (model, ratio) = self.collisions(volume);
+        let (mut weight, mut colour) = (1.0_f64, C::splat(1.0));
+        let mut left = self.max_collisions;
+        loop {
+            let length = ray.length();
+            let mut s = 0.0;
+            // Flights along one direction.
+            loop {
+                let depth = source.next_exponential();
+                let Some((next, sigma_samp)) = self.sampling.fly(ray.world_line(), s, length, depth) else {
+                    return End::Escaped { direction: ray.world_line().direction, energy: colour * weight };
+                };
+                if left == 0 {
+                    return End::Truncated;
+                }
+                left -= 1;
+                s = next;
+                let (energy, scatters) = match model.collide(ray.sigma_t(s) / sigma_samp, source) {
+                    Outcome::Transmitted(energy) => (energy, false),
+                    Outcome::Scattered(energy) => (energy, true),
+                    Outcome::Absorbed => return End::Absorbed,
+                };
+                weight *= energy;
+                if weight.abs() < ROULETTE_BELOW {
+                    if source.next_uniform() * ROULETTE_BELOW >= weight.abs() {
+                        return End::Absorbed;
+                    }
+                    weight = ROULETTE_BELOW.copysign(weight);
+                }
+                if scatters {
+                    break;
+                }
+            }
+            let Line { direction: incident, .. } = *ray.world_line();
+            let point = ray.world_point(s);
+            colour = colour * ratio;
+            scattered(ScatteringEvent { point, incident, energy: colour * weight }, source);
+            let (u, v) = (source.next_uniform(), source.next_uniform());
+            let direction = volume.phase.sample(incident, u, v).direction;
+            ray = volume.inside(Line { origin: point, direction });
+        }
+    }
+}

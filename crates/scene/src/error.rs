@@ -1,0 +1,56 @@
+//! What the constructors of a scene refuse.
+
+/// Why a part of a scene cannot be built. Each variant names the inequality that was violated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// A number is NaN or infinite.
+    #[error("{what} must be finite")]
+    NotFinite {
+        /// The parameter.
+        what: &'static str,
+    },
+    /// A number is negative.
+    #[error("{what} must be at least 0, found {found}")]
+    Negative {
+        /// The parameter.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+    },
+    /// A direction of length zero, or one that another parameter makes useless.
+    #[error("{what} must not be {because}")]
+    Degenerate {
+        /// The parameter.
+        what: &'static str,
+        /// What it is.
+        because: &'static str,
+    },
+    /// The field of view is no angle that a pinhole can have.
+    #[error("vertical_fov_degrees must lie between 0 and 180, found {found}")]
+    FieldOfView {
+        /// What was given \[°\].
+        found: f64,
+    },
+    /// A picture without pixels.
+    #[error("{what} must be at least 1 in both directions")]
+    NoPixels {
+        /// The parameter.
+        what: &'static str,
+    },
+    /// As many pixels as width times height says.
+    #[error("a map of {width} x {height} needs {} pixels, found {found}", width * height)]
+    PixelCount {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Pixels given.
+        found: usize,
+    },
+}
+
+impl SceneError {
+    pub(crate) fn check_finite(what: &'static str, is_finite: bool) -> Result<(), Self> {
+        if is_finite { Ok(()) } else { Err(Self::NotFinite { what }) }
+    }
+}

@@ -1,0 +1,33 @@
+//! The least geometry that the papers' figures need: a pinhole camera, one medium in its bounds, lights.
+//!
+//! A [`Scene`] is generic over its medium, its phase function and its [`Spectrum`], so that it compiles to what it has: a
+//! gray scene carries no colour, a homogeneous medium no look-up. There are no surfaces yet.
+//!
+//! Directions of travel are those of importons (from the camera) unless said otherwise; radiance is symmetric.
+
+mod background;
+mod camera;
+mod environment_map;
+mod error;
+mod light;
+mod spectrum;
+mod volume;
+
+pub use background::Background;
+pub use camera::{Camera, Projection};
+pub use environment_map::EnvironmentMap;
+pub use error::SceneError;
+pub use light::{Connection, Emission, Lights, Source};
+pub use spectrum::Spectrum;
+pub use volume::Volume;
+
+/// A camera that looks at a medium among lights.
+#[derive(Clone, Debug)]
+pub struct Scene<M, P, C> {
+    /// Who looks.
+    pub camera: Camera,
+    /// What scatters.
+    pub volume: Volume<M, P, C>,
+    /// What shines.
+    pub lights: Lights<C>,
+}

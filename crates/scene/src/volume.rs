@@ -1,0 +1,51 @@
+//! The scattering medium of a scene.
+
+use crate::{Connection, Spectrum};
+use fairflight_media::{Bounds, Line, Medium, Ray};
+use glam::DVec3;
+
+/// A medium in its bounds, with how much and whereto it scatters. Outside the bounds is vacuum.
+#[derive(Clone, Copy, Debug)]
+pub struct Volume<M, P, C> {
+    /// The extinction, shared by all channels.
+    pub medium: M,
+    /// Where it is.
+    pub bounds: Bounds,
+    /// σ_s/σ_t per channel \[1\]; above 1 only where the scene permits a gain.
+    pub albedo: C,
+    /// Whereto it scatters.
+    pub phase: P,
+}
+
+impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
+    /// The part of a ray inside the bounds as a profile; `None` where it misses them.
+    ///
+    /// `length` ends the ray; `line.direction` is of unit length.
+    #[inline]
+    pub fn enter(&self, line: &Line, length: Option<f64>) -> Option<Ray<&M>> {
+        // A line of finite numbers and of unit direction is what the constructors of cameras and lights guarantee.
+        let clip = self.bounds.clip(line.origin, line.direction, length).ok().flatten()?;
+        (clip.length > 0.0).then(|| Ray::new(&self.medium, &clip))
+    }
+
+    /// The rest of a ray that starts inside the bounds, as a profile.
+    #[inline]
+    pub fn inside(&self, line: Line) -> Ray<&M> {
+        Ray::new(&self.medium, &self.bounds.clip_inside(line))
+    }
+
+    /// The ray from a point in the volume to a light, up to the light or to the end of the bounds, as a profile.
+    #[inline]
+    pub fn towards(&self, point: DVec3, connection: &Connection<C>) -> Ray<&M> {
+        let mut clip = self.bounds.clip_inside(Line { origin: point, direction: connection.towards });
+        if let Some(distance) = connection.distance {
+            clip.length = clip.length.min(distance);
+        }
+        Ray::new(&self.medium, &clip)
+    }
+
+    /// The same volume with another view of its medium (counted, observed), its phase function by reference.
+    pub fn with_medium<N>(&self, medium: N) -> Volume<N, &P, C> {
+        Volume { medium, bounds: self.bounds, albedo: self.albedo, phase: &self.phase }
+    }
+}

@@ -1,0 +1,53 @@
+//! Regular tracking: the closed form itself.
+
+use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use fairflight_media::{OpticalThickness, RayQuadrature, Tolerance};
+use fairflight_sources::UniformSource;
+
+/// exp(−τ) from an optical thickness in closed form: no variance, no look-up, no variate.
+///
+/// **Law.** Exact. What it costs is what the closed form costs: a few sines for szirmay-kalos-2017 eq. 21, two evaluations
+/// per cell for trilinear voxels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Regular;
+
+impl<F: OpticalThickness> TransmittanceEstimator<F> for Regular {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, _source: &mut S) -> f64 {
+        (-field.optical_thickness(0.0, field.length())).exp()
+    }
+
+    fn admits(&self, _field: &F, _s: f64, sigma_t: f64) -> bool {
+        sigma_t.is_finite()
+    }
+}
+
+impl<F: OpticalThickness> ClosedForm<F> for Regular {
+    fn theory(
+        &self,
+        _quadrature: &mut RayQuadrature<F>,
+        _optical_thickness: f64,
+        _tolerance: Tolerance,
+    ) -> Theory {
+        Theory {
+            relative_mean: 1.0,
+            relative_central: [0.0; HIGHEST_MOMENT - 1],
+            log_relative_variance: f64::NEG_INFINITY,
+            relative_variance_error: 0.0,
+            lookups: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::Constant;
+    use fairflight_sources::Scripted;
+
+    #[test]
+    fn it_draws_nothing_and_is_exact() {
+        let field = Constant::new(0.5, 4.0).unwrap();
+        assert_eq!(Regular.estimate(&field, &mut Scripted::new([])), (-2.0_f64).exp());
+    }
+}
