@@ -15,6 +15,7 @@ mod verify;
 
 pub mod experiment;
 pub mod image;
+pub mod interrupt;
 pub mod measure;
 pub mod plan;
 pub mod reference;

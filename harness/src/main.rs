@@ -4,6 +4,8 @@ use fairflight_harness::Terminal;
 use std::io::{self, IsTerminal};
 
 fn main() -> std::process::ExitCode {
+    // Without the handler the program does its work all the same; only an interrupt would leave a temporary folder behind.
+    let _ = fairflight_harness::interrupt::install();
     let code = fairflight_harness::run(
         std::env::args_os(),
         &mut io::stdin().lock(),

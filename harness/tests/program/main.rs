@@ -2,5 +2,7 @@
 
 mod common;
 mod estimate;
+#[cfg(unix)]
+mod interrupt;
 mod refusals;
 mod report;

@@ -1,9 +1,10 @@
 //! A report folder appears whole or not at all.
 //!
 //! Everything is written into a folder beside the final one, which is then renamed. An older report makes way; anything else is
-//! never touched.
+//! never touched. An interrupted run removes what it has begun.
 
 use crate::Failure;
+use crate::interrupt::{Guard, shield};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,8 @@ pub struct Prepared {
     partial: TempDir,
     /// The parents that did not exist before, innermost first.
     created: Vec<PathBuf>,
+    /// Of the temporary folder and of the parents.
+    guards: Vec<Guard>,
     committed: bool,
 }
 
@@ -38,10 +41,14 @@ impl Prepared {
         };
         let missing = parent.ancestors().filter(|path| *path != Path::new("") && !path.exists());
         let mut created = Created(missing.map(Path::to_owned).collect());
+        // An interrupt comes before all of this or finds it registered.
+        let mut shield = shield();
         fs::create_dir_all(parent).map_err(failed)?;
         let partial = beside(parent, &hidden(name, "partial")).map_err(failed)?;
         let created = std::mem::take(&mut created.0);
-        Ok(Self { folder: target, partial, created, committed: false })
+        let mut guards = vec![shield.remove_on_interrupt(partial.path())];
+        guards.extend(created.iter().map(|folder| shield.remove_on_interrupt_if_empty(folder)));
+        Ok(Self { folder: target, partial, created, guards, committed: false })
     }
 
     /// Where to write.
@@ -54,6 +61,8 @@ impl Prepared {
         // Time has passed since the first look.
         refuse_foreign(&self.folder)?;
         let failed = |error: std::io::Error| Failure::not_written(&self.folder, error);
+        // Between the two renames there is neither the older report nor the new one in place: an interrupt waits.
+        let mut shield = shield();
         if fs::symlink_metadata(&self.folder).is_ok() {
             let parent = self.partial.path().parent().unwrap_or(Path::new("."));
             let name = self.folder.file_name().unwrap_or_default();
@@ -74,6 +83,7 @@ impl Prepared {
             fs::rename(self.partial.path(), &self.folder).map_err(failed)?;
         }
         self.committed = true;
+        std::mem::take(&mut self.guards).into_iter().for_each(|guard| shield.forget(guard));
         Ok(())
     }
 }
