@@ -1,8 +1,9 @@
-//! Statistics of estimators: mergeable moments, tests of a mean and a variance, and their verdicts.
+//! Statistics of estimators: mergeable moments, tests of a mean, a variance and a distribution, and their verdicts.
 //!
 //! [`Moments`] observes, [`Reference`] says what should have come out, [`judge`] compares: sound, unsound, or not
 //! testable at this N. The parts are open to other uses: [`binomial`], [`bernstein`], [`normal`] and [`approximation`]
-//! are the tests of a mean and when they hold, [`family`] keeps the false alarm of many checks.
+//! are the tests of a mean and when they hold, [`family`] keeps the false alarm of many checks. Samplers are tested
+//! against a whole distribution: [`chi_square()`] by cells, [`kolmogorov_smirnov()`] by its distribution function.
 //!
 //! The crate knows numbers only: no light transport, no files, clocks, threads or random sources.
 
@@ -17,8 +18,11 @@ pub mod approximation;
 pub mod bernstein;
 pub mod binomial;
 pub mod binomial_inference;
+pub mod chi_square;
 pub mod closed_moments;
 pub mod family;
+pub mod goodness;
+pub mod kolmogorov_smirnov;
 pub mod moments;
 pub mod normal;
 pub mod reference;
@@ -28,9 +32,12 @@ pub use approximation::NormalApproximation;
 pub use bernstein::Bernstein;
 pub use binomial::{Binomial, BinomialError};
 pub use binomial_inference::{clopper_pearson, trials_needed};
+pub use chi_square::chi_square;
 pub use closed_moments::ClosedMoments;
 pub use family::{holm_rejections, sidak_level};
+pub use goodness::GoodnessOfFit;
 pub use judge::judge;
+pub use kolmogorov_smirnov::kolmogorov_smirnov;
 pub use moments::Moments;
 pub use policy::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER};
 pub use reference::{Reference, Scores};

@@ -1,11 +1,19 @@
 //! Phase functions: how matter redistributes the direction of a scattered particle.
 
+mod error;
 mod frame;
+mod henyey_greenstein;
 mod isotropic;
 mod rayleigh;
+mod schlick;
+mod tabulated;
 
+pub use error::PhaseError;
+pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
 pub use rayleigh::Rayleigh;
+pub use schlick::Schlick;
+pub use tabulated::Tabulated;
 
 use glam::DVec3;
 
