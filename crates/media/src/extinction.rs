@@ -114,6 +114,13 @@ impl<F: OpticalThickness + ?Sized> OpticalThickness for &F {
     }
 }
 
+impl<F: InvertOpticalThickness + ?Sized> InvertOpticalThickness for &F {
+    #[inline]
+    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
+        (**self).invert(from, depth)
+    }
+}
+
 impl<F: Breakpoints + ?Sized> Breakpoints for &F {
     fn breakpoints(&self) -> Vec<f64> {
         (**self).breakpoints()

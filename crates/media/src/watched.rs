@@ -2,7 +2,7 @@
 //!
 //! They are separate from the fields, so that a run without them pays nothing.
 
-use crate::{Extinction, Majorant};
+use crate::{Extinction, InvertOpticalThickness, Majorant, OpticalThickness};
 use std::cell::Cell;
 
 /// Counts look-ups.
@@ -45,6 +45,21 @@ impl<F: Majorant> Majorant for Counted<F> {
     #[inline]
     fn majorant(&self) -> f64 {
         self.field.majorant()
+    }
+}
+
+/// A closed form is no look-up.
+impl<F: OpticalThickness> OpticalThickness for Counted<F> {
+    #[inline]
+    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
+        self.field.optical_thickness(from, to)
+    }
+}
+
+impl<F: InvertOpticalThickness> InvertOpticalThickness for Counted<F> {
+    #[inline]
+    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
+        self.field.invert(from, depth)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Radiance by walks through a medium.
 
+mod expected_value;
 mod integrator;
 mod particle_tracer;
 mod sampling;
 mod shadow;
 mod walk;
 
+pub use expected_value::ExpectedValue;
 pub use integrator::Integrator;
 pub use particle_tracer::{Attenuation, ParticleTracer};
 pub use sampling::{NotPositive, SamplingExtinction, Uniform};

@@ -1,0 +1,40 @@
+//! Free flights: how far a particle flies before it collides with matter.
+//!
+//! A sampler is a small value prepared for one profile; [`FreeFlight::sample`] draws a [`Flight`]. Its file holds the
+//! algorithm, the closed form of its weights ([`ClosedForm`]), its expected look-ups, its domain of validity and its source:
+//! that file is what one ports.
+//!
+//! | sampler | source | assumes | weight |
+//! |---|---|---|---|
+//! | [`Inversion`] | szirmay-kalos-2017 eq. 4 | an inverse of the optical thickness in closed form | 1 |
+//! | [`Newton`] | szirmay-kalos-2017 eq. 4 | an optical thickness in closed form | 1 |
+//! | [`Woodcock`] | raab-2008 algorithm 1 | a majorant, constant or in cells | 1 |
+//!
+//! ```
+//! use fairflight_freeflight::{Flight, FreeFlight, Woodcock};
+//! use fairflight_media::{Constant, PiecewiseLinear};
+//! use fairflight_sources::Seeded;
+//!
+//! // A ray of length 3 whose extinction rises to 2 and falls: optical thickness 3.
+//! let field = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.0, 2.0, 0.0]).unwrap();
+//! let woodcock = Woodcock::new(Constant::new(2.0, 3.0).unwrap());
+//! let mut source = Seeded::new(1);
+//! let n = 100_000;
+//! let escaped = (0..n)
+//!     .filter(|_| matches!(woodcock.sample(&field, &mut source), Flight::Escaped { .. }))
+//!     .count();
+//! assert!((escaped as f64 / f64::from(n) - (-3.0_f64).exp()).abs() < 0.004);
+//! ```
+
+mod flight;
+mod inversion;
+mod newton;
+mod root;
+mod theory;
+mod woodcock;
+
+pub use flight::{Flight, FreeFlight};
+pub use inversion::Inversion;
+pub use newton::Newton;
+pub use theory::{ClosedForm, HIGHEST_MOMENT};
+pub use woodcock::Woodcock;

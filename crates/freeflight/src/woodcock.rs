@@ -1,0 +1,127 @@
+//! Woodcock tracking: tentative flights through a majorant (raab-2008 algorithm 1, woodcock-1965).
+
+use crate::theory::{HIGHEST_MOMENT, unweighted_collided, unweighted_escaped};
+use crate::{ClosedForm, Flight, FreeFlight};
+use fairflight_media::{Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance};
+use fairflight_sources::UniformSource;
+
+/// Flies through the majorant, and accepts a collision at s with probability σ_t(s)/majorant(s).
+///
+/// raab-2008 algorithm 1 with a majorant that may vary along the ray, so that cells with majorants of their own cost no
+/// restart at their borders: the tentative flight is inverted across them.
+///
+/// **Law.** Tentative collisions are a Poisson process of rate majorant(s); keeping each with probability σ_t/majorant
+/// leaves one of rate σ_t, whose first point has the density σ_t T. Every weight is 1.
+///
+/// **Moments.** E\[weight^k; collided\] = 1 − T, E\[weight^k; escaped\] = T, whatever the majorant.
+///
+/// **Cost.** ∫ majorant(s) T(s) ds look-ups: one per tentative collision, until one is accepted.
+///
+/// **Domain.** 0 ≤ σ_t(s) ≤ majorant(s) everywhere. Above the majorant too few flights collide: a bias.
+///
+/// The printed algorithm takes −log(rand()), infinite at 0, and accepts at `ratio ≥ rand()`, which can collide in empty
+/// space; here −ln(1 − u), and a collision only where `u < ratio`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Woodcock<R> {
+    majorant: R,
+}
+
+impl<R: InvertOpticalThickness> Woodcock<R> {
+    /// Woodcock tracking through `majorant`, which covers the profile to be sampled and no more.
+    pub fn new(majorant: R) -> Self {
+        Self { majorant }
+    }
+
+    /// The majorant along the ray.
+    pub fn majorant(&self) -> &R {
+        &self.majorant
+    }
+}
+
+impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Woodcock<R> {
+    #[inline]
+    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+        debug_assert_eq!(field.length(), self.majorant.length(), "prepared for another profile");
+        let mut s = 0.0;
+        while let Some(next) = self.majorant.invert(s, source.next_exponential()) {
+            s = next;
+            // The majorant where the tentative collision is, not where the flight began.
+            if source.next_uniform() * self.majorant.sigma_t(s) < field.sigma_t(s) {
+                return Flight::Collided { distance: s, weight: 1.0 };
+            }
+        }
+        Flight::Escaped { weight: 1.0 }
+    }
+
+    #[inline]
+    fn admits(&self, _field: &F, s: f64, sigma_t: f64) -> bool {
+        (0.0..=self.majorant.sigma_t(s)).contains(&sigma_t)
+    }
+}
+
+impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Woodcock<R> {
+    fn collided(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        tolerance: Tolerance,
+        score: impl Fn(f64) -> f64,
+    ) -> Integral<HIGHEST_MOMENT> {
+        unweighted_collided(quadrature, tolerance, score)
+    }
+    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
+        unweighted_escaped(quadrature, tolerance)
+    }
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<f64> {
+        let tentative = quadrature.integrate_nested(
+            tolerance,
+            |_, sigma_t| [sigma_t],
+            |s, _, [tau]| [self.majorant.sigma_t(s) * (-tau).exp()],
+        );
+        Some(tentative.value[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::{Constant, PiecewiseConstant};
+    use fairflight_sources::Scripted;
+
+    /// u with −ln(1 − u) = depth.
+    fn variate(depth: f64) -> f64 {
+        -(-depth).exp_m1()
+    }
+
+    #[test]
+    fn the_majorant_of_the_cell_that_was_reached_decides() {
+        let field = Constant::new(0.5, 2.0).unwrap();
+        let majorant = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.5]).unwrap();
+        let woodcock = Woodcock::new(majorant);
+        // The first step ends at 1.5, where the majorant is tight: a collision for every variate.
+        let flight = woodcock.sample(&field, &mut Scripted::new([variate(2.25), 0.999]));
+        assert!((flight.distance().unwrap() - 1.5).abs() < 1e-15, "{flight:?}");
+        // At 0.5 the ratio is 1/4.
+        let sample = |u: f64| woodcock.sample(&field, &mut Scripted::new([variate(1.0), u, variate(3.0)]));
+        assert!(sample(0.249).distance().is_some());
+        assert_eq!(sample(0.251), Flight::Escaped { weight: 1.0 });
+    }
+
+    #[test]
+    fn nothing_collides_in_empty_space() {
+        let empty = Constant::new(0.0, 1.0).unwrap();
+        let woodcock = Woodcock::new(Constant::new(1.0, 1.0).unwrap());
+        let flight = woodcock.sample(&empty, &mut Scripted::new([0.5, 0.0, 0.5]));
+        assert_eq!(flight, Flight::Escaped { weight: 1.0 });
+    }
+
+    #[test]
+    fn expected_look_ups_of_a_constant_field() {
+        let field = Constant::new(0.5, 2.0).unwrap();
+        let mut quadrature = RayQuadrature::new(field, &[]);
+        let woodcock = Woodcock::new(Constant::new(2.0, 2.0).unwrap());
+        // 2 ∫ exp(−s/2) ds over 2.
+        let exact = 4.0 * -(-1.0_f64).exp_m1();
+        let found = woodcock.lookups(&mut quadrature, Tolerance::TIGHT).unwrap();
+        assert!((found - exact).abs() < 1e-12);
+    }
+}
