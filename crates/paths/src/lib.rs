@@ -5,6 +5,7 @@ mod integrator;
 mod particle_tracer;
 mod sampling;
 mod shadow;
+pub mod single_scattering;
 mod walk;
 
 pub use expected_value::ExpectedValue;

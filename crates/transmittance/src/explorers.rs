@@ -39,12 +39,23 @@ impl Explorers {
     /// Looks another profile up at as many points, without allocating: the next pixel's ray.
     pub fn refit<F: Extinction + ?Sized>(&mut self, field: &F) {
         self.length = field.length();
-        let spacing = self.spacing();
         for i in 0..self.values.len() {
             self.values[i] = field.sigma_t(self.position(i));
-            if i > 0 {
-                self.depth[i] = self.depth[i - 1] + 0.5 * spacing * (self.values[i - 1] + self.values[i]);
-            }
+        }
+        self.integrate();
+    }
+
+    /// The same values at the same fractions of another length, without a look-up: a control for a neighbouring ray
+    /// (szirmay-kalos-2017 section 4, "data can even be borrowed from nearby rays").
+    pub fn lend(&mut self, length: f64) {
+        self.length = length;
+        self.integrate();
+    }
+
+    fn integrate(&mut self) {
+        let spacing = self.spacing();
+        for i in 1..self.values.len() {
+            self.depth[i] = self.depth[i - 1] + 0.5 * spacing * (self.values[i - 1] + self.values[i]);
         }
     }
 
@@ -131,6 +142,16 @@ mod tests {
             let (fitted, exact) = (explorers.optical_thickness(0.0, s), field.optical_thickness(0.0, s));
             assert!((fitted - exact).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn a_lent_control_keeps_its_values_at_the_same_fractions() {
+        let field = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.0, 2.0, 0.5]).unwrap();
+        let mut explorers = Explorers::through(&field, 4).unwrap();
+        let (value, depth) = (explorers.sigma_t(1.5), explorers.optical_thickness(0.0, 1.5));
+        explorers.lend(6.0);
+        assert_eq!(explorers.length(), 6.0);
+        assert_eq!((explorers.sigma_t(3.0), explorers.optical_thickness(0.0, 3.0)), (value, 2.0 * depth));
     }
 
     #[test]
