@@ -1,9 +1,11 @@
 //! An integrator of any kind, instantiated over the medium that it meets.
 
+use super::single_scattering::SingleScatteringPlan;
 use super::{RayEstimator, Unlawful};
 use crate::Failure;
 use crate::spec::{
-    Collisions, EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SamplingFieldSpec, TracerSpec,
+    Collisions, EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SamplingFieldSpec,
+    SingleScatteringSpec, TracerSpec,
 };
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle};
 use fairflight_media::{LineThickness, Medium, PhaseFunction};
@@ -30,6 +32,8 @@ pub enum IntegratorPlan {
     },
     /// Expectations in place of decisions.
     ExpectedValue,
+    /// One scattering event per light.
+    SingleScattering(SingleScatteringPlan),
 }
 
 /// An integrator, and what it has to say at the end of a tile.
@@ -71,7 +75,9 @@ impl IntegratorPlan {
             }
             IntegratorSpec::ParticleTracer(tracer) => Self::tracer(tracer),
             IntegratorSpec::ExpectedValue => Ok(Self::ExpectedValue),
-            IntegratorSpec::SingleScattering { .. } => Err(not_yet("kind", "single_scattering")),
+            IntegratorSpec::SingleScattering(spec) => {
+                SingleScatteringPlan::build(spec).map(Self::SingleScattering)
+            }
         }
     }
 
@@ -96,7 +102,7 @@ impl IntegratorPlan {
     /// estimator is not defined for is left in `unlawful`.
     ///
     /// # Errors
-    /// If the integrator needs a closed form.
+    /// If the integrator needs a closed form, or does not fit the lights.
     pub fn by_look_ups<'s, M, P, C, J>(
         &'s self,
         volume: &'s Volume<M, P, C>,
@@ -115,6 +121,7 @@ impl IntegratorPlan {
                 Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
             }
             Self::ParticleTracer { walk, .. } => Ok(job.run(ParticleTracer::new(volume, lights, *walk))),
+            Self::SingleScattering(plan) => plan.by_look_ups(volume, lights, unlawful, job),
             Self::RegularTransmittance => Err(needs_closed_form("estimator.kind: regular")),
             Self::ExpectedValue => Err(needs_closed_form("kind: expected_value")),
         }
@@ -123,7 +130,7 @@ impl IntegratorPlan {
     /// The same on a medium whose optical thickness has a closed form.
     ///
     /// # Errors
-    /// None of its own.
+    /// If the integrator does not fit the lights.
     pub fn by_closed_form<'s, M, P, C, J>(
         &'s self,
         volume: &'s Volume<M, P, C>,
@@ -140,6 +147,7 @@ impl IntegratorPlan {
         match self {
             Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, lights, Regular))),
             Self::ExpectedValue => Ok(job.run(ExpectedValue::new(volume, lights))),
+            Self::SingleScattering(plan) => plan.by_closed_form(volume, lights, unlawful, job),
             Self::Transmittance(_) | Self::ParticleTracer { .. } => {
                 self.by_look_ups(volume, lights, unlawful, job)
             }
@@ -166,6 +174,7 @@ impl IntegratorPlan {
             Self::ExpectedValue if sigma_t < 0.0 => Err(Failure::refused(format!(
                 "integrator.kind: expected_value needs sigma_t of at least 0, but sigma_t = {sigma_t} was met"
             ))),
+            Self::SingleScattering(plan) => plan.admits(sigma_t),
             _ => Ok(()),
         }
     }
@@ -178,6 +187,7 @@ impl IntegratorPlan {
             Self::Transmittance(
                 RayEstimator::Woodcock { majorant } | RayEstimator::LineIntegral { majorant, .. },
             ) => format!("integrator.estimator.majorant: {majorant} is none, since {at}"),
+            Self::SingleScattering(_) => format!("integrator.shadow (or estimator): not defined for {at}"),
             _ => format!("integrator.estimator: not defined for {at}"),
         })
     }
@@ -190,7 +200,7 @@ impl IntegratorSpec {
         let is_biased = |estimator: &RayEstimatorSpec| matches!(estimator, RayEstimatorSpec::Sampled(spec) if EstimatorSpec::is_biased_baseline(spec));
         let biased = match self {
             Self::Transmittance { estimator } => is_biased(estimator),
-            Self::SingleScattering { estimator, shadow, .. } => {
+            Self::SingleScattering(SingleScatteringSpec { estimator, shadow, .. }) => {
                 is_biased(estimator) || shadow.as_ref().is_some_and(is_biased)
             }
             Self::ParticleTracer(_) | Self::ExpectedValue => false,
@@ -199,7 +209,7 @@ impl IntegratorSpec {
     }
 }
 
-fn needs_closed_form(what: &str) -> Failure {
+pub(super) fn needs_closed_form(what: &str) -> Failure {
     Failure::refused(format!(
         "integrator.{what} needs a medium whose optical thickness has a closed form: homogeneous, analytic_cosine or vdb"
     ))

@@ -14,6 +14,7 @@ mod profile;
 mod ray_estimator;
 mod sampling;
 mod scene;
+mod single_scattering;
 mod voxel_lattice;
 
 pub use control::AnyControl;
@@ -26,6 +27,7 @@ pub use profile::{AnyProfile, FieldJob};
 pub use ray_estimator::{RayEstimator, RayWorker, Unlawful};
 pub use sampling::AnySampling;
 pub use scene::{Radiant, ScenePlan, Spectra};
+pub use single_scattering::SingleScatteringPlan;
 pub use voxel_lattice::VoxelLattice;
 
 use crate::Failure;

@@ -62,22 +62,35 @@ impl<C: Spectrum> MediumJob for Draw<'_, C> {
     type Output = Result<Drawn<C>, Failure>;
 
     fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output {
+        let integrator = &self.plan.integrator;
+        // Whether they fit together is known before the first tile.
+        integrator.by_look_ups(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
         self.tiles(|tile| {
             self.tile(medium, |volume, unlawful| {
                 let job = DrawTile { plan: self.plan, tile };
-                self.plan.integrator.by_look_ups(volume, &self.radiant.lights, unlawful, job)
+                integrator.by_look_ups(volume, &self.radiant.lights, unlawful, job)
             })
         })
     }
 
     fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
+        let integrator = &self.plan.integrator;
+        integrator.by_closed_form(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
         self.tiles(|tile| {
             self.tile(medium, |volume, unlawful| {
                 let job = DrawTile { plan: self.plan, tile };
-                self.plan.integrator.by_closed_form(volume, &self.radiant.lights, unlawful, job)
+                integrator.by_closed_form(volume, &self.radiant.lights, unlawful, job)
             })
         })
     }
+}
+
+/// An integrator that could be built.
+struct Fits;
+
+impl<C> IntegratorJob<C> for Fits {
+    type Output = ();
+    fn run<I: TileIntegrator<C>>(self, _integrator: I) {}
 }
 
 /// The pixels of a tile, and how many walks were cut.
@@ -86,6 +99,15 @@ type TilePixels<C> = Result<(Vec<Pixel<C>>, u64), Failure>;
 type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a crate::plan::AnyPhase, C>;
 
 impl<C: Spectrum> Draw<'_, C> {
+    fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
+        Volume {
+            medium: Observed::new(medium),
+            bounds: self.plan.bounds,
+            albedo: self.radiant.albedo,
+            phase: &self.plan.phase,
+        }
+    }
+
     /// One tile on an observed medium; what was met is judged afterwards.
     fn tile<M: Medium>(
         &self,
@@ -94,12 +116,7 @@ impl<C: Spectrum> Draw<'_, C> {
     ) -> Result<(Vec<Pixel<C>>, Spent), Failure> {
         let plan = self.plan;
         let clock = ThreadTime::now();
-        let volume = Volume {
-            medium: Observed::new(medium),
-            bounds: plan.bounds,
-            albedo: self.radiant.albedo,
-            phase: &plan.phase,
-        };
+        let volume = self.volume(medium);
         let unlawful = Cell::new(None);
         let drawn = draw(&volume, &unlawful)?;
         let observed = &volume.medium;

@@ -18,5 +18,5 @@ pub use node::{Node, Object};
 pub use profile::ProfileSpec;
 pub use scene::{
     Collisions, ColourSpec, IntegratorSpec, LightSpec, Particles, PhaseSpec, RayEstimatorSpec,
-    SamplingFieldSpec, SceneOverrides, SceneSpec, Strategy, TracerSpec, VolumeSpec,
+    SamplingFieldSpec, SceneOverrides, SceneSpec, SingleScatteringSpec, Strategy, TracerSpec, VolumeSpec,
 };

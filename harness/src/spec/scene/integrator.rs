@@ -5,6 +5,7 @@ use crate::Failure;
 use crate::spec::estimator::{one_of, read_version};
 use crate::spec::{Node, Object};
 use fairflight_collision::Version;
+use fairflight_paths::single_scattering::Heuristic;
 
 /// An integrator with its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,20 +20,24 @@ pub enum IntegratorSpec {
     /// Walks whose decisions are replaced by their expectations.
     ExpectedValue,
     /// szirmay-kalos-2017 section 4.3.
-    SingleScattering {
-        /// Where on the ray the scattering point is chosen.
-        sampling: Strategy,
-        /// Of the transmittance along the camera's ray.
-        estimator: RayEstimatorSpec,
-        /// Scattering points per ray.
-        samples_per_ray: u32,
-        /// How strategies are combined: balance, or power.
-        power_heuristic: bool,
-        /// Of the transmittance to the lights; without it, the integrator's own.
-        shadow: Option<RayEstimatorSpec>,
-        /// How many neighbouring pixels share one fitted control.
-        shared_explorers: u32,
-    },
+    SingleScattering(SingleScatteringSpec),
+}
+
+/// Single scattering with its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingleScatteringSpec {
+    /// Where on the ray the scattering point is chosen.
+    pub sampling: Strategy,
+    /// Of the transmittance along the camera's ray.
+    pub estimator: RayEstimatorSpec,
+    /// Scattering points per ray, light and technique.
+    pub samples_per_ray: u32,
+    /// How techniques are combined.
+    pub heuristic: Heuristic,
+    /// Of the transmittance to the lights; without it, the camera ray's.
+    pub shadow: Option<RayEstimatorSpec>,
+    /// How many neighbouring pixels share one fitted control.
+    pub shared_explorers: u32,
 }
 
 /// Particle tracing with its parameters.
@@ -137,16 +142,20 @@ impl IntegratorSpec {
             "transmittance" => Self::Transmittance { estimator: estimator()? },
             "particle_tracer" => Self::ParticleTracer(TracerSpec::take_from(&object)?),
             "expected_value" => Self::ExpectedValue,
-            "single_scattering" => Self::SingleScattering {
+            "single_scattering" => Self::SingleScattering(SingleScatteringSpec {
                 sampling: named(&object.required("sampling")?, &Strategy::NAMES)?,
                 estimator: estimator()?,
                 samples_per_ray: object.required("samples_per_ray")?.integer(1, MOST)? as u32,
-                power_heuristic: named_or(&object, "heuristic", &[("balance", false), ("power", true)])?,
+                heuristic: named_or(
+                    &object,
+                    "heuristic",
+                    &[("balance", Heuristic::Balance), ("power", Heuristic::Power)],
+                )?,
                 shadow: object.optional("shadow").map(|node| RayEstimatorSpec::read(&node)).transpose()?,
                 shared_explorers: object
                     .optional("shared_explorers")
                     .map_or(Ok(1), |node| node.integer(1, MOST))? as u32,
-            },
+            }),
             _ => {
                 return Err(kind
                     .refuse("must be transmittance, particle_tracer, expected_value or single_scattering"));

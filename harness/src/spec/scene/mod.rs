@@ -8,7 +8,9 @@ mod ray_estimator;
 mod volume;
 
 pub use colour::ColourSpec;
-pub use integrator::{Collisions, IntegratorSpec, Particles, SamplingFieldSpec, Strategy, TracerSpec};
+pub use integrator::{
+    Collisions, IntegratorSpec, Particles, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec,
+};
 pub use light::LightSpec;
 pub use ray_estimator::RayEstimatorSpec;
 pub use volume::{PhaseSpec, VolumeSpec};

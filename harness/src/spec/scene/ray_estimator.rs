@@ -35,10 +35,14 @@ impl RayEstimatorSpec {
         | EstimatorSpec::SingleParticle { sampling, control, .. } = &spec
         {
             let for_one_ray = "is given along one ray, but a scene has many";
-            if !matches!(sampling, SamplingSpec::Constant(_)) {
-                return Err(object
-                    .required("sigma_samp")?
-                    .reject(format!("{for_one_ray}: a number is allowed")));
+            let sigma_samp = object.required("sigma_samp")?;
+            match sampling {
+                SamplingSpec::PiecewiseConstant { .. } => {
+                    return Err(sigma_samp.reject(format!("{for_one_ray}: a number is allowed")));
+                }
+                // Where nothing is sampled the control would have to be the medium itself, on every ray.
+                SamplingSpec::Constant(0.0) => return Err(sigma_samp.refuse("must be a number above 0")),
+                SamplingSpec::Constant(_) => {}
             }
             if matches!(control, ControlSpec::PiecewiseLinear { .. }) {
                 let kind = object.required("control")?.object()?.required("kind")?;
