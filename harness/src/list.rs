@@ -1,10 +1,10 @@
 //! `harness list`: what there is to choose from.
 
+use crate::report::registry::REPORTS;
 use crate::{DONE, Failure};
 use std::io::Write;
 
 const LIST: &str = "\
-reports        standard
 profiles       constant          sigma_t, length
                piecewise_constant edges, sigma_t
                piecewise_linear  positions, sigma_t
@@ -31,8 +31,14 @@ controls       none
 ";
 
 pub(crate) fn run(stdout: &mut dyn Write) -> Result<i32, Failure> {
+    let mut list = String::new();
+    for (k, kind) in REPORTS.iter().enumerate() {
+        let word = if k == 0 { "reports" } else { "" };
+        list.push_str(&format!("{word:<15}{:<18}{}\n", kind.name, kind.about));
+    }
+    list.push_str(LIST);
     stdout
-        .write_all(LIST.as_bytes())
+        .write_all(list.as_bytes())
         .map_err(|error| Failure::NotWritten(format!("cannot write the list: {error}")))?;
     Ok(DONE)
 }

@@ -43,6 +43,7 @@ macro_rules! media {
 
 media!(
     collision,
+    phase,
     constant,
     piecewise_constant,
     piecewise_constant_negative,
@@ -52,6 +53,7 @@ media!(
     perlin,
     voxels,
     expression,
+    freeflight,
 );
 
 #[test]

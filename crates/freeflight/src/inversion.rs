@@ -34,15 +34,19 @@ impl<F: Extinction> ClosedForm<F> for Inversion {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         unweighted_collided(quadrature, tolerance, score)
     }
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
         unweighted_escaped(quadrature, tolerance)
     }
-    fn lookups(&self, _quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<f64> {
-        Some(0.0)
+    fn lookups(
+        &self,
+        _quadrature: &mut RayQuadrature<F>,
+        _tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]> {
+        Some([0.0; HIGHEST_MOMENT])
     }
 }
 

@@ -8,7 +8,9 @@
 //! |---|---|---|---|
 //! | [`Inversion`] | szirmay-kalos-2017 eq. 4 | an inverse of the optical thickness in closed form | 1 |
 //! | [`Newton`] | szirmay-kalos-2017 eq. 4 | an optical thickness in closed form | 1 |
+//! | [`Regular`] | szirmay-kalos-2017 eq. 4, cell by cell | cells with a cubic in each | 1 |
 //! | [`Woodcock`] | raab-2008 algorithm 1 | a majorant, constant or in cells | 1 |
+//! | [`Tracking`] | szirmay-kalos-2017 eq. 9 and 12 | nothing: any sampling extinction, either sign | 1 where σ_samp ≥ σ_t ≥ 0 |
 //!
 //! ```
 //! use fairflight_freeflight::{Flight, FreeFlight, Woodcock};
@@ -29,12 +31,16 @@
 mod flight;
 mod inversion;
 mod newton;
+mod regular;
 mod root;
 mod theory;
+mod tracking;
 mod woodcock;
 
 pub use flight::{Flight, FreeFlight};
 pub use inversion::Inversion;
 pub use newton::Newton;
+pub use regular::Regular;
 pub use theory::{ClosedForm, HIGHEST_MOMENT};
+pub use tracking::Tracking;
 pub use woodcock::Woodcock;

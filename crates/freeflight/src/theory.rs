@@ -10,19 +10,25 @@ pub trait ClosedForm<F: Extinction> {
     /// E\[1{collided} (weight · score(distance))^k\] for k = 1 … 8 (index k − 1). With a score of 1, the moments of the
     /// weight of a collision; the second is then what a wasteful sampler is known by.
     ///
-    /// Where `score` jumps, the `quadrature` must have a border.
+    /// Where `score` jumps, the `quadrature` must have a border. (A trait object: nobody is in a hurry here, and the
+    /// quadrature is compiled once.)
     fn collided(
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT>;
 
     /// E\[1{escaped} weight^k\] for k = 1 … 8 (index k − 1).
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT];
 
-    /// The expected number of look-ups of one flight; `None` where no closed form is known.
-    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<f64>;
+    /// E\[N^k\] of the number N of look-ups of one flight, for k = 1 … 8 (index k − 1): the first is the expected cost.
+    /// `None` where no closed form is known.
+    fn lookups(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]>;
 }
 
 impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
@@ -30,14 +36,18 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         (**self).collided(quadrature, tolerance, score)
     }
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
         (**self).escaped(quadrature, tolerance)
     }
-    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<f64> {
+    fn lookups(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]> {
         (**self).lookups(quadrature, tolerance)
     }
 }
@@ -46,7 +56,7 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
 pub(crate) fn unweighted_collided<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
-    score: impl Fn(f64) -> f64,
+    score: &dyn Fn(f64) -> f64,
 ) -> Integral<HIGHEST_MOMENT> {
     quadrature.integrate_nested(
         tolerance,
@@ -64,6 +74,44 @@ pub(crate) fn unweighted_escaped<F: Extinction>(
     [(-tau).exp(); HIGHEST_MOMENT]
 }
 
+/// E\[N^k\], k = 1 … 8, of a flight that looks up once at each point of a Poisson process. `rates` at s and σ_t: of the
+/// points that end the flight, and of those that do not.
+///
+/// The two kinds are independent Poisson processes. A flight ends at s with the density ending(s) exp(−∫ ending), and has
+/// then looked up once more than the Poisson number P of mean ν(s) = ∫_0^s of the other rate; one that leaves the profile
+/// has looked up P times.
+pub(crate) fn lookups_of_a_walk<F: Extinction>(
+    quadrature: &mut RayQuadrature<F>,
+    tolerance: Tolerance,
+    rates: &dyn Fn(f64, f64) -> [f64; 2],
+) -> [f64; HIGHEST_MOMENT] {
+    let ended = quadrature.integrate_nested(tolerance, rates, |s, sigma_t, [ended, passed]| {
+        let [ending, _] = rates(s, sigma_t);
+        let (_, one_more) = poisson_moments(passed);
+        one_more.map(|moment| ending * (-ended).exp() * moment)
+    });
+    let [all_ended, all_passed] = quadrature.integrate(tolerance, rates).value;
+    let (escaped, _) = poisson_moments(all_passed);
+    std::array::from_fn(|i| ended.value[i] + (-all_ended).exp() * escaped[i])
+}
+
+/// E\[P^k\] and E\[(1 + P)^k\], k = 1 … 8, of a Poisson variate P of this mean: the second by the binomial theorem, and
+/// E\[P^(k+1)\] = mean · E\[(1 + P)^k\].
+fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHEST_MOMENT]) {
+    let mut raw = [1.0; HIGHEST_MOMENT + 2];
+    raw[1] = mean;
+    let mut one_more = [0.0; HIGHEST_MOMENT];
+    for k in 1..=HIGHEST_MOMENT {
+        let mut binomial = 1.0;
+        for (j, moment) in raw[..=k].iter().enumerate() {
+            one_more[k - 1] += binomial * moment;
+            binomial *= (k - j) as f64 / (j + 1) as f64;
+        }
+        raw[k + 1] = mean * one_more[k - 1];
+    }
+    (std::array::from_fn(|i| raw[i + 1]), one_more)
+}
+
 /// x, x², …, x⁸.
 pub(crate) fn powers(x: f64) -> [f64; HIGHEST_MOMENT] {
     let mut power = 1.0;
@@ -71,4 +119,20 @@ pub(crate) fn powers(x: f64) -> [f64; HIGHEST_MOMENT] {
         power *= x;
         power
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_of_a_poisson_variate() {
+        // Touchard polynomials: λ, λ + λ², λ + 3λ² + λ³, λ + 7λ² + 6λ³ + λ⁴.
+        let (raw, one_more) = poisson_moments(2.0);
+        assert_eq!(raw[..4], [2.0, 6.0, 22.0, 94.0]);
+        assert_eq!(one_more[..3], [3.0, 11.0, 47.0]);
+        // Bell's number B_8 for λ = 1, and B_9 = E[(1 + P)^8].
+        let (raw, one_more) = poisson_moments(1.0);
+        assert_eq!((raw[7], one_more[7]), (4140.0, 21147.0));
+    }
 }

@@ -1,6 +1,6 @@
 //! Woodcock tracking: tentative flights through a majorant (raab-2008 algorithm 1, woodcock-1965).
 
-use crate::theory::{HIGHEST_MOMENT, unweighted_collided, unweighted_escaped};
+use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, unweighted_collided, unweighted_escaped};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -15,7 +15,8 @@ use fairflight_sources::UniformSource;
 ///
 /// **Moments.** E\[weight^k; collided\] = 1 − T, E\[weight^k; escaped\] = T, whatever the majorant.
 ///
-/// **Cost.** ∫ majorant(s) T(s) ds look-ups: one per tentative collision, until one is accepted.
+/// **Cost.** ∫ majorant(s) T(s) ds look-ups: one per tentative collision, until one is accepted. A flight that passes the
+/// virtual extinction ν = ∫ (majorant − σ_t) makes a Poisson number of mean ν of them, and one more where it collides.
 ///
 /// **Domain.** 0 ≤ σ_t(s) ≤ majorant(s) everywhere. Above the majorant too few flights collide: a bias.
 ///
@@ -64,20 +65,20 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Woodcock<R> {
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
-        score: impl Fn(f64) -> f64,
+        score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
         unweighted_collided(quadrature, tolerance, score)
     }
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
         unweighted_escaped(quadrature, tolerance)
     }
-    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<f64> {
-        let tentative = quadrature.integrate_nested(
-            tolerance,
-            |_, sigma_t| [sigma_t],
-            |s, _, [tau]| [self.majorant.sigma_t(s) * (-tau).exp()],
-        );
-        Some(tentative.value[0])
+    fn lookups(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        tolerance: Tolerance,
+    ) -> Option<[f64; HIGHEST_MOMENT]> {
+        let rates = |s: f64, sigma_t: f64| [sigma_t, self.majorant.sigma_t(s) - sigma_t];
+        Some(lookups_of_a_walk(quadrature, tolerance, &rates))
     }
 }
 
@@ -122,6 +123,10 @@ mod tests {
         // 2 ∫ exp(−s/2) ds over 2.
         let exact = 4.0 * -(-1.0_f64).exp_m1();
         let found = woodcock.lookups(&mut quadrature, Tolerance::TIGHT).unwrap();
-        assert!((found - exact).abs() < 1e-12);
+        assert!((found[0] - exact).abs() < 1e-12);
+        // Without matter the number is Poisson of mean 4.
+        let mut empty = RayQuadrature::new(Constant::new(0.0, 2.0).unwrap(), &[]);
+        let found = woodcock.lookups(&mut empty, Tolerance::TIGHT).unwrap();
+        assert!((found[0] - 4.0).abs() < 1e-12 && (found[1] - 20.0).abs() < 1e-11);
     }
 }

@@ -1,6 +1,7 @@
 //! The laws of the estimators as functions, their wrong twins, and the hard cases as data.
 //!
-//! * [`transmittance::check`], [`collision::check`]: one law each, for any implementer.
+//! * [`transmittance::check`], [`collision::check`], [`freeflight::check`], [`phase::check`]: one law each, for any
+//!   implementer.
 //! * [`scores`]: which values an estimate can take, derived from what is known of a profile.
 //! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
 //! * [`hard_cases()`]: numerically hard inputs with their exact answers.
@@ -20,7 +21,9 @@ mod truth;
 mod twins;
 
 pub mod collision;
+pub mod freeflight;
 pub mod lookups;
+pub mod phase;
 pub mod scores;
 pub mod transmittance;
 

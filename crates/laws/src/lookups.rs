@@ -27,6 +27,14 @@ pub fn reference(expected: f64, law: LookupLaw) -> Reference {
     Reference { mean: expected, error: QUADRATURE * expected, moments, scores: Scores::Unbounded }
 }
 
+/// As [`reference`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
+#[must_use]
+pub fn with_moments(raw: &[f64]) -> Reference {
+    let moments = ClosedMoments::from_raw(raw);
+    let mean = moments.mean;
+    Reference { mean, error: QUADRATURE * mean, moments: Some(moments), scores: Scores::Unbounded }
+}
+
 /// Every cumulant of a Poisson law is its mean: m_n = Σ_{j=2..n} C(n − 1, j − 1) λ m_{n−j}.
 fn poisson(mean: f64) -> ClosedMoments {
     let mut central = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];

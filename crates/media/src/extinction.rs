@@ -34,8 +34,8 @@ pub trait OpticalThickness: Extinction {
 ///
 /// Such a field is nowhere negative.
 pub trait InvertOpticalThickness: OpticalThickness {
-    /// The smallest distance `s ≥ from` with `optical_thickness(from, s) = depth`, or `None` where the profile ends
-    /// before that depth is reached.
+    /// The distance `s ≥ from` with `optical_thickness(from, s) = depth`, or `None` where the profile ends before that
+    /// depth is reached. Where a whole stretch without extinction has that depth, its end: there matter begins.
     fn invert(&self, from: f64, depth: f64) -> Option<f64>;
 }
 

@@ -40,6 +40,19 @@ impl Bounds {
         Clip { line, entry_distance: 0.0, length: self.exit_distance(line.origin, line.direction) }
     }
 
+    /// Whether the line through `origin` along the unit vector `direction` certainly misses the bounds: a quick look before
+    /// [`clip`](Self::clip), which most rays of a camera need not go through. `false` says nothing.
+    #[inline]
+    #[must_use]
+    pub fn certainly_misses(&self, origin: DVec3, direction: DVec3) -> bool {
+        let (center, radius) = self.enclosing_ball();
+        let offset = origin - center;
+        let along = offset.dot(direction);
+        let far = offset.length_squared();
+        // Each square is rounded at the size of the largest, by a few ε = 2e-16: a margin a thousand times that.
+        far - along * along - radius * radius > 1e-12 * (far + radius * radius)
+    }
+
     /// Whether a point lies in the bounds, their surface included.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
@@ -78,6 +91,29 @@ mod tests {
                 assert!((bounds.exit_distance(point, direction) - clip.length).abs() < 1e-13);
             }
         }
+    }
+
+    #[test]
+    fn what_certainly_misses_does_not_meet() {
+        let ball = Bounds::sphere(dvec3(0.0, 0.0, 10.0), 10.0).unwrap();
+        let cube = Bounds::aligned_box(DVec3::ZERO, DVec3::ONE).unwrap();
+        let (mut missed, mut met) = (0, 0);
+        for i in 0..2000 {
+            let t = f64::from(i);
+            let offset = 100.0 * dvec3(t.sin(), (1.3 * t).cos(), (0.7 * t).sin());
+            let aside = 2.0 * dvec3((0.3 * t).cos(), (0.9 * t).sin(), (0.11 * t).sin());
+            for (bounds, size) in [(ball, 10.0), (cube, 0.7)] {
+                let (center, _) = bounds.enclosing_ball();
+                let (origin, direction) = (center + offset, (size * aside - offset).normalize());
+                let meets = bounds.clip(origin, direction, None).unwrap().is_some();
+                let misses = bounds.certainly_misses(origin, direction);
+                assert!(!(meets && misses), "{origin} {direction}");
+                missed += i32::from(misses);
+                met += i32::from(meets);
+            }
+        }
+        assert!(missed > 500 && met > 500, "{missed} {met}");
+        assert!(!ball.certainly_misses(dvec3(1e6, 10.0, 10.0), -DVec3::X));
     }
 
     #[test]

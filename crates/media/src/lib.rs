@@ -10,6 +10,7 @@
 //! | [`Majorant`], [`Minorant`] | a bound of σ_t over the whole profile |
 //! | [`OpticalThickness`] | ∫ σ_t ds in closed form |
 //! | [`InvertOpticalThickness`] | the distance at which an optical thickness is reached, in closed form |
+//! | [`Cells`] | where one cubic ends and the next begins |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
@@ -19,6 +20,7 @@
 mod analytic_cosine;
 mod bounded;
 mod bounds;
+mod cells;
 mod constant;
 mod error;
 mod expression;
@@ -41,6 +43,7 @@ mod watched;
 pub use analytic_cosine::AnalyticCosine;
 pub use bounded::Bounded;
 pub use bounds::{Bounds, Clip};
+pub use cells::{Cells, LineCells};
 pub use constant::Constant;
 pub use error::FieldError;
 pub use expression::{ExpressionError, ExpressionFieldError, ExpressionMedium, ExpressionProfile};

@@ -35,11 +35,15 @@ impl PiecewiseConstant {
         Ok(Self { edges, sigma_t, depth_at_edge })
     }
 
+    /// The edges strictly inside the profile.
+    pub(crate) fn inner_edges(&self) -> &[f64] {
+        &self.edges[1..self.edges.len() - 1]
+    }
+
     /// The cell that holds `s`; a point on an edge belongs to the cell that starts there.
     #[inline]
     fn cell(&self, s: f64) -> usize {
-        let inner = &self.edges[1..self.edges.len() - 1];
-        inner.partition_point(|&edge| edge <= s)
+        self.inner_edges().partition_point(|&edge| edge <= s)
     }
 
     /// ∫ σ_t from the start of the profile to `s`.
@@ -105,7 +109,7 @@ impl InvertOpticalThickness for PiecewiseConstant {
 
 impl Breakpoints for PiecewiseConstant {
     fn breakpoints(&self) -> Vec<f64> {
-        self.edges[1..self.edges.len() - 1].to_vec()
+        self.inner_edges().to_vec()
     }
 }
 

@@ -1,8 +1,10 @@
 //! Extinction interpolated linearly between n nodes.
 
-use crate::{Breakpoints, Extinction, FieldError, Majorant, Minorant, OpticalThickness};
+use crate::{
+    Breakpoints, Extinction, FieldError, InvertOpticalThickness, Majorant, Minorant, OpticalThickness,
+};
 
-/// σ_t(s) linear between `(positions[i], sigma_t[i])` and the next node. As a profile or a control.
+/// σ_t(s) linear between `(positions[i], sigma_t[i])` and the next node. As a profile, a control, or a sampling extinction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PiecewiseLinear {
     positions: Vec<f64>,
@@ -33,10 +35,14 @@ impl PiecewiseLinear {
         Ok(field)
     }
 
+    /// The nodes strictly inside the profile.
+    pub(crate) fn inner_nodes(&self) -> &[f64] {
+        &self.positions[1..self.positions.len() - 1]
+    }
+
     #[inline]
     fn piece(&self, s: f64) -> usize {
-        let inner = &self.positions[1..self.positions.len() - 1];
-        inner.partition_point(|&node| node <= s)
+        self.inner_nodes().partition_point(|&node| node <= s)
     }
 
     /// σ_t at `s` in piece `i`, clamped to the piece so that rounding never extrapolates.
@@ -88,9 +94,58 @@ impl OpticalThickness for PiecewiseLinear {
     }
 }
 
+/// Where nodes are nowhere negative.
+impl InvertOpticalThickness for PiecewiseLinear {
+    #[inline]
+    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
+        debug_assert!(self.minorant() >= 0.0, "a sampling extinction is not negative");
+        let first = self.piece(from);
+        let end = self.positions[first + 1];
+        let thickness = self.thickness_in(first, from, end);
+        if depth < thickness {
+            let ends = (self.value_in(first, from), self.sigma_t[first + 1]);
+            return self.inside(from + inverse_in_piece(ends, end - from, depth / thickness), from);
+        }
+        // What is left is spent from the next node on. A piece without extinction never holds a depth strictly inside it.
+        let depth = self.depth_at_node[first + 1] + (depth - thickness);
+        let after = &self.depth_at_node[first + 2..];
+        let i = first + 1 + after.partition_point(|&at_node| at_node <= depth);
+        let end = *self.positions.get(i + 1)?;
+        let (start, ends) = (self.positions[i], (self.sigma_t[i], self.sigma_t[i + 1]));
+        // In the depths that the piece was found with, so that the share is below 1.
+        let share = (depth - self.depth_at_node[i]) / (self.depth_at_node[i + 1] - self.depth_at_node[i]);
+        self.inside(start + inverse_in_piece(ends, end - start, share), from)
+    }
+}
+
+impl PiecewiseLinear {
+    /// `s`, unless rounding carried it to the end of the profile or back before `from`.
+    #[inline]
+    fn inside(&self, s: f64, from: f64) -> Option<f64> {
+        let s = s.max(from);
+        (s < self.length()).then_some(s)
+    }
+}
+
+/// How far into a stretch of this width, with the extinctions `a` and `e` at its ends, its optical thickness reaches the
+/// `share` q of the whole, 0 ≤ q < 1.
+///
+/// With the slope b = (e − a)/width the depth d is reached at t = 2 d/(a + √(a² + 2 b d)), the root that does not cancel
+/// for either sign of b. The whole is D = width (a + e)/2, so that 2 b d = (e² − a²) q: the radicand, the square of the
+/// extinction at t, is (1 − q) a² + q e², a sum of positive terms also where the slope runs down to 0.
+#[inline]
+fn inverse_in_piece((a, e): (f64, f64), width: f64, share: f64) -> f64 {
+    if share == 0.0 {
+        return 0.0; // also where a = 0, and the formula is 0/0
+    }
+    // hypot: a² alone would be lost for an extinction of 1e-160.
+    let at_end = f64::hypot((1.0 - share).sqrt() * a, share.sqrt() * e);
+    width * (share * ((a + e) / (a + at_end)))
+}
+
 impl Breakpoints for PiecewiseLinear {
     fn breakpoints(&self) -> Vec<f64> {
-        self.positions[1..self.positions.len() - 1].to_vec()
+        self.inner_nodes().to_vec()
     }
 }
 
@@ -106,6 +161,59 @@ mod tests {
         assert_eq!(tent.optical_thickness(0.5, 2.0), 0.75 + 1.5);
         assert_eq!(tent.majorant(), 2.0);
         assert_eq!(tent.minorant(), 0.0);
+    }
+
+    /// The distance must have the depth that was asked for, from whichever start: to a few roundings of the depth, and one
+    /// of the distance.
+    fn inverts(field: &PiecewiseLinear) {
+        let rounding_of_s = f64::EPSILON * field.length() * field.majorant();
+        for i in 0..40 {
+            let from = field.length() * f64::from(i) / 40.0;
+            let whole = field.optical_thickness(from, field.length());
+            for j in 0..50 {
+                let depth = whole * f64::from(j) / 50.0;
+                let Some(s) = field.invert(from, depth) else {
+                    assert!(whole == 0.0, "from {from}, depth {depth} of {whole}");
+                    continue;
+                };
+                assert!((from..field.length()).contains(&s));
+                let found = field.optical_thickness(from, s);
+                let granted = 4.0 * f64::EPSILON * whole + rounding_of_s;
+                assert!((found - depth).abs() <= granted, "from {from}: {found} for {depth}");
+            }
+            assert_eq!(field.invert(from, whole * (1.0 + 1e-14) + f64::MIN_POSITIVE), None);
+        }
+    }
+
+    #[test]
+    fn inversion_undoes_the_optical_thickness() {
+        let new = |p: &[f64], v: &[f64]| PiecewiseLinear::new(p.to_vec(), v.to_vec()).unwrap();
+        // Up, down to zero, empty, up from zero, flat.
+        let nodes = [0.0, 1.0, 3.0, 4.0, 5.0, 7.0];
+        inverts(&new(&nodes, &[0.5, 2.0, 0.0, 0.0, 1.0, 1.0]));
+        inverts(&new(&nodes, &[0.0, 0.0, 3.0, 1e-9, 0.0, 0.0]));
+        // A slope of nearly zero: the textbook form −a + √(a² + 2bd) has no digit left here.
+        inverts(&new(&[0.0, 1.0], &[1.0, 1.0 + 1e-13]));
+        // Very thin, and of a size whose square is no number.
+        inverts(&new(&[0.0, 1.0, 2.0], &[1e-300, 3e-300, 0.0]));
+        inverts(&new(&[0.0, 1.0], &[1e200, 1e-200]));
+    }
+
+    #[test]
+    fn closed_values_of_the_inverse() {
+        let ramp = PiecewiseLinear::new(vec![0.0, 2.0], vec![0.0, 4.0]).unwrap();
+        assert_eq!(ramp.invert(0.0, 1.0), Some(1.0));
+        assert_eq!(ramp.invert(0.0, 0.0), Some(0.0));
+        assert_eq!(ramp.invert(1.0, 3.0 - 1e-14).map(|s| (s - 2.0).abs() < 1e-14), Some(true));
+        assert_eq!(ramp.invert(0.0, 4.0), None);
+        // Downwards to zero: the last hundredth of the depth takes the last tenth of the way.
+        let down = PiecewiseLinear::new(vec![0.0, 2.0], vec![4.0, 0.0]).unwrap();
+        assert!((down.invert(0.0, 3.96).unwrap() - 1.8).abs() < 4e-15);
+        // Empty at first: a flight of depth 0 lands where matter begins.
+        let late = PiecewiseLinear::new(vec![0.0, 1.0, 2.0], vec![0.0, 0.0, 1.0]).unwrap();
+        assert_eq!(late.invert(0.0, 0.0), Some(1.0));
+        let empty = PiecewiseLinear::new(vec![0.0, 1.0], vec![0.0, 0.0]).unwrap();
+        assert_eq!(empty.invert(0.0, 0.0), None);
     }
 
     #[test]

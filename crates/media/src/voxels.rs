@@ -1,7 +1,7 @@
 //! A medium interpolated between voxels, and its exact integral along a line.
 
 use crate::lattice_planes::PlaneCrossings;
-use crate::{FieldError, Line, LineThickness, Medium, MediumBreakpoints};
+use crate::{FieldError, Line, LineCells, LineThickness, Medium, MediumBreakpoints};
 use glam::{DAffine3, DVec3};
 
 /// Values at integer coordinates, interpolated between them.
@@ -124,6 +124,12 @@ impl<L: Lattice> LineThickness for Voxels<L> {
 impl<L: Lattice> MediumBreakpoints for Voxels<L> {
     fn line_breakpoints(&self, local: &Line, length: f64) -> Vec<f64> {
         Crossings::new(local, 0.0, length).collect()
+    }
+}
+
+impl<L: Lattice> LineCells for Voxels<L> {
+    fn line_borders(&self, local: &Line, length: f64) -> impl Iterator<Item = f64> {
+        Crossings::new(local, 0.0, length)
     }
 }
 

@@ -103,6 +103,11 @@ impl<F, D: Domain> Watched<F, D> {
         Self { field, domain, violation: Cell::new(None) }
     }
 
+    /// The field that is watched.
+    pub fn field(&self) -> &F {
+        &self.field
+    }
+
     /// The first look-up that was not lawful, if there was one.
     pub fn violation(&self) -> Option<Violation> {
         self.violation.get()
@@ -135,6 +140,21 @@ impl<F: Majorant, D: Domain> Majorant for Watched<F, D> {
     #[inline]
     fn majorant(&self) -> f64 {
         self.field.majorant()
+    }
+}
+
+/// A closed form is no look-up.
+impl<F: OpticalThickness, D: Domain> OpticalThickness for Watched<F, D> {
+    #[inline]
+    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
+        self.field.optical_thickness(from, to)
+    }
+}
+
+impl<F: InvertOpticalThickness, D: Domain> InvertOpticalThickness for Watched<F, D> {
+    #[inline]
+    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
+        self.field.invert(from, depth)
     }
 }
 

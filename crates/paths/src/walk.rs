@@ -19,7 +19,7 @@ use glam::DVec3;
 ///
 /// **Law.** The expected energy that is scattered per volume, and that leaves, is that of the medium, for every σ_samp that is
 /// positive where the extinction is. Above r = 2/(1 + a) the absolute energy grows at each collision: in a medium where that
-/// happens often enough there is no second moment, later no first one (`second_moment_growth`).
+/// happens often enough there is no second moment, later no first one ([`second_moment_growth`](crate::second_moment_growth)).
 ///
 /// **Colour.** The decisions are made by the greatest albedo; each channel carries the ratio of its own to that one, at most 1.
 ///

@@ -23,6 +23,9 @@ impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
     /// `length` ends the ray; `line.direction` is of unit length.
     #[inline]
     pub fn enter(&self, line: &Line, length: Option<f64>) -> Option<Ray<&M>> {
+        if self.bounds.certainly_misses(line.origin, line.direction) {
+            return None;
+        }
         // A line of finite numbers and of unit direction is what the constructors of cameras and lights guarantee.
         let clip = self.bounds.clip(line.origin, line.direction, length).ok().flatten()?;
         (clip.length > 0.0).then(|| Ray::new(&self.medium, &clip))

@@ -42,7 +42,7 @@ mod woodcock;
 
 pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
-pub use line_integral::{LineIntegral, NoSplits};
+pub use line_integral::{LineIntegral, NoSplits, Starts};
 pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
 pub use ray_marching::{NoSteps, Offset, RayMarching};
 pub use regular::Regular;

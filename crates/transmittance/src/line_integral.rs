@@ -28,6 +28,16 @@ pub struct LineIntegral {
     splits: u32,
 }
 
+/// How the first steps of the flights of a [`LineIntegral`] are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Starts {
+    /// Equidistant variates with one random shift, as algorithm 2 does.
+    #[default]
+    Equidistant,
+    /// Independent variates: what raab-2008 fig. 1 and 2 compare with.
+    Independent,
+}
+
 /// A line integral needs at least one flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("splits must be at least 1, found 0")]
@@ -57,11 +67,14 @@ impl LineIntegral {
     /// is c_∂V. `collision(s, σ_t(s), source)` is c_V(s)/σ_t(s), the score of a collision; for in-scattering it is albedo ·
     /// in-scattered radiance, finite where σ_t vanishes since no flight collides there.
     ///
+    /// Independent `starts` have the same expectation, and no stratification.
+    ///
     /// T is a number or a colour: whatever can be added, and multiplied by a number.
     #[inline]
     pub fn integrate<F, S, T>(
         &self,
         field: &F,
+        starts: Starts,
         source: &mut S,
         end: T,
         mut collision: impl FnMut(f64, f64, &mut S) -> T,
@@ -79,7 +92,12 @@ impl LineIntegral {
         let n = f64::from(self.splits);
         let shift = source.next_uniform();
         for k in 0..self.splits {
-            let u = (f64::from(k) + shift) / n * p_volume;
+            let fraction = match starts {
+                Starts::Equidistant => (f64::from(k) + shift) / n,
+                Starts::Independent if k == 0 => shift,
+                Starts::Independent => source.next_uniform(),
+            };
+            let u = fraction * p_volume;
             // Rounding may put u on p_V itself: such a flight counts as escaped, at a probability below 2^-50.
             scores += match collides(field, -(-u).ln_1p(), source) {
                 Some((s, sigma_t)) => collision(s, sigma_t, source),
@@ -96,7 +114,7 @@ impl LineIntegral {
 impl<F: Majorant> TransmittanceEstimator<F> for LineIntegral {
     #[inline]
     fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
-        self.integrate(field, source, 1.0, |_, _, _| 0.0)
+        self.integrate(field, Starts::Equidistant, source, 1.0, |_, _, _| 0.0)
     }
 
     #[inline]

@@ -1,49 +1,92 @@
 //! `harness report`: measure, then write.
 
+use super::document;
+use super::registry::{ReportKind, Study, find};
+use super::result::Report;
 use super::stability::stability;
 use super::study::{Options, Volume, standard};
-use super::write;
+use super::write::{self, Files};
 use crate::cli::ReportArguments;
 use crate::{DONE, Environment, Failure, UNSOUND};
 use std::io::Write;
-use std::path::PathBuf;
-
-/// The reports that there are.
-const NAMES: [&str; 1] = ["standard"];
+use std::path::{Path, PathBuf};
 
 pub(crate) fn run(
     arguments: &ReportArguments,
     environment: &Environment,
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
-    let name = arguments.name.as_str();
-    if !NAMES.contains(&name) {
-        return Err(Failure::refused(format!("report {name}: must be one of {}", NAMES.join(", "))));
-    }
-    let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(name));
-    let report = {
-        // Found out before a minute of measurement, not after it.
-        let prepared = write::prepare(&folder)?;
-        let report = environment.on_threads(arguments.threads, || {
-            let options = Options {
-                quick: arguments.quick,
-                seed: arguments.seed,
-                vdb: arguments.vdb.clone().map(|file| Volume {
-                    file,
-                    grid: arguments.grid.clone(),
-                    scale: arguments.scale,
-                }),
-                threads: rayon::current_num_threads(),
-            };
-            let mut report = standard(&options, environment)?;
-            report.stability = stability(arguments.seed);
-            Ok(report)
-        })?;
-        environment.on_threads(arguments.threads, || prepared.commit(&report))?;
-        report
+    report(find(&arguments.name)?, arguments, environment, stderr)
+}
+
+fn report(
+    kind: &ReportKind,
+    arguments: &ReportArguments,
+    environment: &Environment,
+    stderr: &mut dyn Write,
+) -> Result<i32, Failure> {
+    let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(kind.name));
+    let (seconds, sound) = match kind.study {
+        Study::Standard => {
+            let report = measured_and_written(&folder, arguments, environment, || {
+                standard_report(arguments, environment)
+            })?;
+            (report.seconds, is_sound(&report))
+        }
+        Study::Document(study) => {
+            if arguments.vdb.is_some() {
+                return Err(Failure::refused(format!(
+                    "report {}: --vdb is an option of the standard report only",
+                    kind.name
+                )));
+            }
+            let document = measured_and_written(&folder, arguments, environment, || {
+                let options = document::Options {
+                    quick: arguments.quick,
+                    seed: arguments.seed,
+                    threads: rayon::current_num_threads(),
+                };
+                study(&options, environment)
+            })?;
+            (document.seconds, document.unsound.is_empty())
+        }
     };
     // A person who does not see this has the report all the same.
-    let _ = writeln!(stderr, "{}: written in {:.1} s", folder.join("index.html").display(), report.seconds);
+    let _ = writeln!(stderr, "{}: written in {seconds:.1} s", folder.join("index.html").display());
+    Ok(if sound { DONE } else { UNSOUND })
+}
+
+fn measured_and_written<R: Files + Send + Sync>(
+    folder: &Path,
+    arguments: &ReportArguments,
+    environment: &Environment,
+    measure: impl FnOnce() -> Result<R, Failure> + Send,
+) -> Result<R, Failure> {
+    // Found out before a minute of measurement, not after it.
+    let prepared = write::prepare(folder)?;
+    let report = environment.on_threads(arguments.threads, measure)?;
+    environment.on_threads(arguments.threads, || prepared.commit(&report))?;
+    Ok(report)
+}
+
+fn standard_report(arguments: &ReportArguments, environment: &Environment) -> Result<Report, Failure> {
+    let options = Options {
+        quick: arguments.quick,
+        seed: arguments.seed,
+        vdb: arguments.vdb.clone().map(|file| Volume {
+            file,
+            grid: arguments.grid.clone(),
+            scale: arguments.scale,
+        }),
+        threads: rayon::current_num_threads(),
+    };
+    let mut report = standard(&options, environment)?;
+    report.stability = stability(arguments.seed);
+    Ok(report)
+}
+
+/// Whether the unbiased estimators agree with their closed forms, and the hard cases are right.
+fn is_sound(report: &Report) -> bool {
     let unsound = report.media.iter().flat_map(|medium| &medium.sweeps).any(|curve| {
         !curve.series.is_baseline()
             && curve
@@ -51,6 +94,53 @@ pub(crate) fn run(
                 .iter()
                 .any(|point| point.measured.as_ref().is_some_and(|measured| measured.sound == Some(false)))
     });
-    let broken = report.stability.iter().any(|row| !row.passes);
-    Ok(if unsound || broken { UNSOUND } else { DONE })
+    !unsound && report.stability.iter().all(|row| row.passes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::write::fixture_document;
+    use super::*;
+    use crate::{REFUSED, Terminal};
+
+    const KIND: ReportKind = ReportKind {
+        name: "made-up",
+        about: "",
+        study: Study::Document(|options, _| {
+            let mut document = fixture_document();
+            // The seed decides, so that both ends can be seen.
+            if options.seed == 2 {
+                document.unsound.push("made up".to_owned());
+            }
+            Ok(document)
+        }),
+    };
+
+    fn code(arguments: &ReportArguments) -> i32 {
+        let environment = Environment::new(&[], Terminal::default());
+        report(&KIND, arguments, &environment, &mut Vec::new()).unwrap_or_else(|failure| failure.code())
+    }
+
+    #[test]
+    fn a_document_is_written_whether_it_is_sound_or_not() {
+        let root = tempfile::tempdir().unwrap();
+        for (seed, expected) in [(1, DONE), (2, UNSOUND)] {
+            let out = root.path().join(seed.to_string());
+            let arguments = ReportArguments { out: Some(out.clone()), seed, ..ReportArguments::default() };
+            assert_eq!(code(&arguments), expected);
+            assert!(out.join("index.html").is_file());
+        }
+    }
+
+    #[test]
+    fn a_volume_is_for_the_standard_report() {
+        let root = tempfile::tempdir().unwrap();
+        let arguments = ReportArguments {
+            out: Some(root.path().join("out")),
+            vdb: Some("some.vdb".into()),
+            ..ReportArguments::default()
+        };
+        assert_eq!(code(&arguments), REFUSED);
+        assert!(!root.path().join("out").exists());
+    }
 }

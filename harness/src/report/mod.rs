@@ -1,6 +1,8 @@
-//! The standard report: what it says, how it is measured, how it is written.
+//! Reports: what they say, how they are measured, how they are written.
 
 pub(crate) mod command;
+pub mod document;
+pub(crate) mod registry;
 pub mod result;
 mod stability;
 pub mod study;

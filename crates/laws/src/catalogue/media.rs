@@ -13,7 +13,7 @@ use glam::{DAffine3, DVec3, dvec3};
 use std::sync::Arc;
 
 /// A medium that this file gets wrong would be a bug here, not a finding: its constructors are told so.
-const LAWFUL: &str = "the catalogue's media are lawful";
+pub(super) const LAWFUL: &str = "the catalogue's media are lawful";
 
 /// Flights per line integral. Its theory costs an integral over the shift for each, hence fewer where cells are many.
 const SPLITS: [u32; 3] = [1, 4, 16];
@@ -87,13 +87,13 @@ pub(super) fn on_every_medium() -> Vec<Check> {
 }
 
 /// szirmay-kalos-2017 eq. 21 in its sphere.
-fn analytic_cosine(origin: DVec3, direction: DVec3) -> Ray<Arc<AnalyticCosine>> {
+pub(super) fn analytic_cosine(origin: DVec3, direction: DVec3) -> Ray<Arc<AnalyticCosine>> {
     let medium = Arc::new(AnalyticCosine::new(1.0).expect(LAWFUL));
     ray(medium, AnalyticCosine::default_bounds(), origin, direction).expect(LAWFUL)
 }
 
 /// Six voxels a side, values that follow no pattern.
-fn voxels() -> Ray<Arc<Voxels<DenseLattice>>> {
+pub(super) fn voxels() -> Ray<Arc<Voxels<DenseLattice>>> {
     let lattice = DenseLattice::of([6, 6, 6], |[x, y, z]| 0.1 * ((7 * x + 5 * y + 11 * z) % 6 + 1) as f64);
     let medium = Arc::new(Voxels::new(lattice, DAffine3::IDENTITY, 1.0).expect(LAWFUL));
     let bounds = Bounds::aligned_box(DVec3::ZERO, DVec3::splat(5.0)).expect(LAWFUL);

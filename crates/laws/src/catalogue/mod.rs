@@ -2,7 +2,9 @@
 
 mod estimators;
 mod exact;
+mod freeflight;
 mod media;
+mod phase;
 mod single_particle;
 mod specimen;
 
@@ -18,8 +20,12 @@ pub enum Law {
     Variance,
     /// A biased baseline has the expectation that its theory states. Its bias is told, not judged.
     OwnExpectation,
+    /// Weighted flights integrate any test function against σ_t T; their expected look-ups.
+    FreeFlight,
     /// szirmay-kalos-2017 eq. 8, by exact algebra.
     Collision,
+    /// A phase function is normalised, has its mean cosine, and is drawn as it is evaluated.
+    Phase,
     /// A wrong twin is rejected.
     WrongTwin,
     /// A hard case has its exact answer, or is refused where it must be.
@@ -37,7 +43,8 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `collision/model`, `twin/name`, `hard/number name`.
+    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `collision/model`, `phase/name`, `twin/name`,
+    /// `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
@@ -76,9 +83,10 @@ impl Check {
     #[must_use]
     pub fn samples(&self, effort: Effort) -> u64 {
         match (effort, self.law) {
-            (Effort::Full, Law::Transmittance | Law::Variance | Law::OwnExpectation) => {
-                6 * self.quick_samples
-            }
+            (
+                Effort::Full,
+                Law::Transmittance | Law::Variance | Law::OwnExpectation | Law::FreeFlight | Law::Phase,
+            ) => 6 * self.quick_samples,
             _ => self.quick_samples,
         }
     }
@@ -109,7 +117,9 @@ fn fingerprint(name: &str) -> u64 {
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
+    checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
+    checks.extend(freeflight::free_flights());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {

@@ -29,7 +29,7 @@ pub(super) struct Specimen<F> {
     /// Divides the samples where look-ups are expensive.
     pub(super) frugality: u64,
     closed_form: Option<Truth>,
-    tolerance: Tolerance,
+    pub(super) tolerance: Tolerance,
     quadrature: OnceLock<(RayQuadrature<F>, Truth)>,
 }
 
@@ -48,7 +48,7 @@ impl<F: SpecimenField> Specimen<F> {
         Self { name, field, frugality: 1, closed_form: None, tolerance, quadrature: OnceLock::new() }
     }
 
-    fn prepared(&self) -> (RayQuadrature<F>, Truth) {
+    pub(super) fn prepared(&self) -> (RayQuadrature<F>, Truth) {
         let (quadrature, truth) = self.quadrature.get_or_init(|| {
             let mut quadrature = RayQuadrature::new(self.field.clone(), &[]);
             let truth =

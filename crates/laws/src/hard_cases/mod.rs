@@ -4,6 +4,7 @@
 //! is evaluated deterministically wherever a set-up without variance exists, else by a short seeded run that the law
 //! judges.
 
+mod anisotropy;
 mod collisions;
 mod far;
 mod heavy_tails;
@@ -141,7 +142,7 @@ impl std::fmt::Debug for HardCase {
     }
 }
 
-/// All hard cases of transmittance, by number.
+/// All hard cases of transmittance and of phase functions, by number.
 #[must_use]
 pub fn hard_cases() -> Vec<HardCase> {
     let mut cases = vacuum::cases();
@@ -153,6 +154,7 @@ pub fn hard_cases() -> Vec<HardCase> {
     cases.extend(variates::cases());
     cases.extend(refusals::cases());
     cases.extend(heavy_tails::cases());
+    cases.extend(anisotropy::cases());
     cases.sort_by_key(|case| case.number);
     cases
 }

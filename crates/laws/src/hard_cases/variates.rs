@@ -2,7 +2,10 @@
 
 use super::{HardCase, LAWFUL, Outcome};
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version, Woodcock as WoodcockModel};
-use fairflight_media::{Bounded, Constant, PiecewiseConstant, Vacuum};
+use fairflight_freeflight::{
+    Flight, FreeFlight, Inversion, Newton, Regular, Tracking as FlightTracking, Woodcock as WoodcockFlight,
+};
+use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, PiecewiseLinear, Vacuum};
 use fairflight_sources::{LARGEST_VARIATE, UniformSource};
 use fairflight_transmittance::{
     LineIntegral, Offset, RayMarching, Tracking, TransmittanceEstimator, Woodcock,
@@ -54,18 +57,69 @@ fn every_sampler(variate: f64) -> Outcome {
     Outcome::said(true, "finite in every sampler")
 }
 
+/// A flight that collided did so on the profile, where there is matter, with a finite weight.
+fn is_lawful<F: Extinction>(field: &F, flight: Flight) -> bool {
+    let collides = |s: f64| (0.0..=field.length()).contains(&s) && field.sigma_t(s) > 0.0;
+    flight.weight().is_finite() && flight.distance().is_none_or(collides)
+}
+
+fn every_flight(variate: f64) -> Outcome {
+    // Empty at first, and in the middle.
+    let steps =
+        PiecewiseConstant::new(vec![0.0, 1.0, 3.0, 4.0, 5.0], vec![0.0, 0.5, 0.0, 0.2]).expect(LAWFUL);
+    let slopes = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.5, 1.5, 0.0]).expect(LAWFUL);
+    let constant = |sigma| Constant::new(sigma, 5.0).expect(LAWFUL);
+    for left in 1..5 {
+        let source = || End { variate, left };
+        let tracking = |version, sigma| {
+            let sampler = FlightTracking::new(version, constant(sigma));
+            is_lawful(&steps, sampler.sample(&steps, &mut source()))
+        };
+        let all = [
+            ("inversion", is_lawful(&steps, Inversion.sample(&steps, &mut source()))),
+            ("inversion of slopes", is_lawful(&slopes, Inversion.sample(&slopes, &mut source()))),
+            ("newton", is_lawful(&steps, Newton.sample(&steps, &mut source()))),
+            ("newton on slopes", is_lawful(&slopes, Newton.sample(&slopes, &mut source()))),
+            ("regular", is_lawful(&steps, Regular.sample(&steps, &mut source()))),
+            ("regular on slopes", is_lawful(&slopes, Regular.sample(&slopes, &mut source()))),
+            ("woodcock", is_lawful(&steps, WoodcockFlight::new(constant(0.5)).sample(&steps, &mut source()))),
+            (
+                "woodcock in cells",
+                is_lawful(&steps, WoodcockFlight::new(steps.clone()).sample(&steps, &mut source())),
+            ),
+            ("terminating", tracking(Version::Terminating, 0.5)),
+            ("non-terminating", tracking(Version::NonTerminating, 0.3)),
+            ("adaptive", tracking(Version::Adaptive, 0.3)),
+        ];
+        if let Some((name, _)) = all.iter().find(|(_, lawful)| !lawful) {
+            return Outcome::said(false, format!("{name}: no weight, or a collision where no matter is"));
+        }
+    }
+    Outcome::said(true, "finite, and a collision only where matter is")
+}
+
 pub(super) fn cases() -> Vec<HardCase> {
     [("0", 0.0), ("1 - 2^-53", LARGEST_VARIATE)]
         .into_iter()
-        .map(|(name, variate)| {
-            HardCase::deterministic(
-                14,
-                format!("the uniform variate {name}"),
-                "every sampler",
-                "finite",
-                "finite",
-                move || every_sampler(variate),
-            )
+        .flat_map(|(name, variate)| {
+            [
+                HardCase::deterministic(
+                    14,
+                    format!("the uniform variate {name}"),
+                    "every sampler",
+                    "finite",
+                    "finite",
+                    move || every_sampler(variate),
+                ),
+                HardCase::deterministic(
+                    14,
+                    format!("the uniform variate {name} in a free flight"),
+                    "free flights",
+                    "finite, where matter is",
+                    "finite",
+                    move || every_flight(variate),
+                ),
+            ]
         })
         .collect()
 }

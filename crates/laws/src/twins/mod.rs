@@ -5,9 +5,11 @@
 
 mod collision_weights;
 mod control;
+mod freeflight;
 mod line_integral;
 mod logarithm;
 mod majorant;
+mod phase;
 mod sampling;
 mod trial;
 mod variance;
@@ -98,10 +100,12 @@ impl std::fmt::Debug for Twin {
 pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
     all.extend(control::twins());
+    all.extend(freeflight::twins());
     all.extend(majorant::twins());
     all.extend(sampling::twins());
     all.extend(line_integral::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
+    all.extend(phase::twins());
     all
 }

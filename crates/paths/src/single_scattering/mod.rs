@@ -1,11 +1,13 @@
 //! Light that is scattered once on its way from lights without extent (szirmay-kalos-2017 section 4.3, eq. 22).
 
+mod line;
 mod marching;
 mod primary;
 mod scattering_driven;
 mod source_driven;
 mod technique;
 
+pub use line::LineSampled;
 pub use marching::Marching;
 pub use primary::{Primary, SharedExplorers, Tracked};
 pub use scattering_driven::ScatteringDriven;
@@ -241,12 +243,8 @@ where
         self.primary.trace(&ray, source);
         let mut radiance = background * self.primary.transmittance(&ray, ray.length());
         if self.sampling.uses(Technique::Scattering) {
-            if let Some(fitted) = self.primary.fitted() {
-                self.fit.refit(fitted, ray.length());
-            } else {
-                self.explorers.next_ray(&ray);
-                self.fit.refit(self.explorers.explorers(), ray.length());
-            }
+            let fitted = self.primary.fitted().unwrap_or_else(|| self.explorers.next_ray(&ray));
+            self.fit.refit(fitted, ray.length());
         }
         for light in &self.lights.sources {
             radiance += match self.sampling {

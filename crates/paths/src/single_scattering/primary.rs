@@ -51,8 +51,8 @@ impl SharedExplorers {
         Ok(Self { explorers, rays: rays.max(1), left: 0 })
     }
 
-    /// Makes them fit for the next ray.
-    pub(super) fn next_ray<F: Extinction>(&mut self, ray: &F) {
+    /// The explorers of the next ray: looked up on it, or lent by one before.
+    pub fn next_ray<F: Extinction>(&mut self, ray: &F) -> &Explorers {
         if self.left == 0 {
             self.explorers.refit(ray);
             self.left = self.rays;
@@ -60,9 +60,6 @@ impl SharedExplorers {
             self.explorers.lend(ray.length());
         }
         self.left -= 1;
-    }
-
-    pub(super) fn explorers(&self) -> &Explorers {
         &self.explorers
     }
 }
@@ -117,8 +114,7 @@ impl<M: Medium, L: CollisionModel + Copy> Primary<M> for Tracked<L> {
         self.walk.clear();
         let sampling = Constant::new(self.sigma_samp, ray.length()).expect("checked by the constructor");
         if let Some(control) = &mut self.control {
-            control.next_ray(ray);
-            Self::draw(&self.model, control.explorers(), sampling, ray, source, &mut self.walk);
+            Self::draw(&self.model, control.next_ray(ray), sampling, ray, source, &mut self.walk);
         } else {
             Self::draw(&self.model, Vacuum::new(ray.length()), sampling, ray, source, &mut self.walk);
         }
@@ -137,7 +133,7 @@ impl<M: Medium, L: CollisionModel + Copy> Primary<M> for Tracked<L> {
         self.sigma_samp
     }
     fn fitted(&self) -> Option<&Explorers> {
-        self.control.as_ref().map(SharedExplorers::explorers)
+        self.control.as_ref().map(|control| &control.explorers)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Grey for transmittance, a diverging map for its error.
+//! The sRGB encoding for transmittance and radiance, a diverging map for errors.
 //!
 //! The diverging map is built in Oklab (Ottosson 2020): lightness falls and chroma grows equally fast on both sides of zero, blue
 //! for too dark, orange for too bright. Equal errors of either sign thus stand out equally, and the two hues stay apart in all
@@ -25,9 +25,9 @@ pub(crate) fn diverging(x: f64) -> Rgb {
     srgb_of_oklab([lightness, chroma * hue.cos(), chroma * hue.sin()])
 }
 
-/// The grey level of a transmittance: the sRGB encoding, estimates outside \[0, 1\] shown as black or white.
-pub(crate) fn grey(transmittance: f64) -> u8 {
-    byte(srgb_of_linear(transmittance.clamp(0.0, 1.0)))
+/// The level of a transmittance, or of a channel of exposed radiance: the sRGB encoding, values outside \[0, 1\] shown as its ends.
+pub(crate) fn grey(linear: f64) -> u8 {
+    byte(srgb_of_linear(linear.clamp(0.0, 1.0)))
 }
 
 fn byte(x: f64) -> u8 {

@@ -155,7 +155,7 @@ fn is_report(folder: &Path) -> bool {
     provenance["command"].as_str().is_some_and(|command| command.split(' ').next() == Some("harness"))
         && provenance["revision"].is_string()
         && provenance["seed"].is_u64()
-        && results["media"].is_array()
+        && (results["media"].is_array() || results["sections"].is_array())
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! `results.json`: one line per point. Fully pretty JSON would put each of a hundred thousand numbers on a line of its own.
 
-use super::super::result::Report;
 use serde::Serialize;
 use serde_json::ser::Formatter;
 use std::io::{Result, Write};
@@ -9,7 +8,7 @@ use std::io::{Result, Write};
 const SPREAD: usize = 5;
 
 /// The file.
-pub(super) fn json(report: &Report) -> serde_json::Result<Vec<u8>> {
+pub(super) fn json(report: &impl Serialize) -> serde_json::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     report.serialize(&mut serde_json::Serializer::with_formatter(&mut bytes, Lines::default()))?;
     bytes.push(b'\n');

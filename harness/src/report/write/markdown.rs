@@ -1,6 +1,6 @@
 //! `tables.md`: the ledger of claims, the hard cases, the optima.
 
-use super::super::result::{ClaimVerdict, MediumReport, Report};
+use super::super::result::{Claim, ClaimVerdict, MediumReport, Report};
 use super::number::{short, short_of_log10};
 use super::optimum::{self, Optimum, Place};
 use super::palette::{look, rank};
@@ -67,17 +67,7 @@ pub(super) fn tables(report: &Report) -> String {
         "# Tables of the standard report\n\nWritten by `{}`, revision {}, seed {}.\n\n## Claims\n\n",
         provenance.command, provenance.revision, provenance.seed
     );
-    let claims = report.claims.iter().map(|claim| {
-        vec![
-            &*claim.id,
-            &*claim.claim,
-            &*claim.source,
-            &*claim.measured,
-            verdict(claim.verdict),
-            &*claim.comment,
-        ]
-    });
-    table(&mut text, &["id", "claim", "source", "measured", "verdict", "comment"], claims);
+    claims(&mut text, &report.claims);
     text.push_str("\n## Hard cases\n\n");
     let numbers: Vec<String> = report.stability.iter().map(|row| row.number.to_string()).collect();
     let rows = report.stability.iter().zip(&numbers).map(|(row, number)| {
@@ -105,7 +95,23 @@ pub(super) fn tables(report: &Report) -> String {
     text
 }
 
-fn table<'a>(text: &mut String, header: &[&str], rows: impl Iterator<Item = Vec<&'a str>>) {
+/// The ledger.
+pub(super) fn claims(text: &mut String, claims: &[Claim]) {
+    let rows = claims.iter().map(|claim| {
+        vec![
+            &*claim.id,
+            &*claim.claim,
+            &*claim.source,
+            &*claim.measured,
+            verdict(claim.verdict),
+            &*claim.comment,
+        ]
+    });
+    table(text, &["id", "claim", "source", "measured", "verdict", "comment"], rows);
+}
+
+/// A table with this header.
+pub(super) fn table<'a>(text: &mut String, header: &[&str], rows: impl Iterator<Item = Vec<&'a str>>) {
     let mut line = |cells: &[&str]| {
         let cells: Vec<String> = cells.iter().map(|cell| escaped(cell)).collect();
         text.push_str(&format!("| {} |\n", cells.join(" | ")));

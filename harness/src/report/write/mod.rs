@@ -1,15 +1,18 @@
-//! Writers of the standard report: they read the [`Report`] and nothing else.
+//! Writers of reports: they read the data of a report and nothing else.
 //!
 //! A report is a folder: `results.json`, `tables.md`, `index.html`, and each figure as SVG, PNG and CSV. Call [`prepare`] before the
-//! measurement and [`Prepared::commit`] after it, or [`write_all_or_nothing`] for both.
+//! measurement and [`Prepared::commit`] after it, or [`write_all_or_nothing`] for both. The standard report has figures of its own;
+//! `document` writes all other reports. Both share the drawing, the tables, the page's parts and the folder.
 
 mod colour_map;
+mod document;
 mod draw;
 mod figure;
 mod folder;
 mod images;
 mod json;
 mod markdown;
+mod median_cut;
 mod number;
 mod optimum;
 mod page;
@@ -21,6 +24,9 @@ mod table;
 mod fixture;
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+pub(crate) use document::fixture::document as fixture_document;
 
 pub use folder::Prepared;
 
@@ -36,13 +42,22 @@ pub fn prepare(folder: &Path) -> Result<Prepared, Failure> {
     Prepared::new(folder)
 }
 
+/// What can be written as a folder of files.
+pub trait Files {
+    /// Writes all files into an existing folder.
+    ///
+    /// # Errors
+    /// [`Failure::NotWritten`] at the first file that cannot be written; those before it remain.
+    fn write(&self, folder: &Path) -> Result<(), Failure>;
+}
+
 impl Prepared {
     /// Writes the report, and puts it in place when it is complete.
     ///
     /// # Errors
     /// [`Failure::NotWritten`]; then nothing has changed.
-    pub fn commit(self, report: &Report) -> Result<(), Failure> {
-        write(report, self.partial())?;
+    pub fn commit(self, report: &impl Files) -> Result<(), Failure> {
+        report.write(self.partial())?;
         self.put()
     }
 }
@@ -51,15 +66,17 @@ impl Prepared {
 ///
 /// # Errors
 /// [`Failure::NotWritten`]; then nothing has changed.
-pub fn write_all_or_nothing(report: &Report, folder: &Path) -> Result<(), Failure> {
+pub fn write_all_or_nothing(report: &impl Files, folder: &Path) -> Result<(), Failure> {
     prepare(folder)?.commit(report)
 }
 
-/// Writes all files of a report into an existing folder.
-///
-/// # Errors
-/// [`Failure::NotWritten`] at the first file that cannot be written; those before it remain.
-pub fn write(report: &Report, folder: &Path) -> Result<(), Failure> {
+impl Files for Report {
+    fn write(&self, folder: &Path) -> Result<(), Failure> {
+        write(self, folder)
+    }
+}
+
+fn write(report: &Report, folder: &Path) -> Result<(), Failure> {
     let failed = |reason: String| Failure::not_written(folder, reason);
     let file = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);

@@ -21,6 +21,20 @@ pub(crate) fn power_of_ten(exponent: i32) -> String {
 
 /// Three significant digits.
 pub(crate) fn short(x: f64) -> String {
+    rounded(x, 3)
+}
+
+/// A number with its interval, to the second digit of the interval's width: more would say nothing.
+pub(crate) fn measured(x: f64, [low, high]: [f64; 2]) -> String {
+    let place = |x: f64| x.abs().log10().floor();
+    let digits = place(x) - place(high - low) + 2.0;
+    // Beyond twelve digits the width is as good as zero, or not a number.
+    let digits = if digits.is_finite() { digits.clamp(3.0, 12.0) as usize } else { 3 };
+    format!("{} [{}, {}]", rounded(x, digits), rounded(low, digits), rounded(high, digits))
+}
+
+/// So many significant digits.
+fn rounded(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".to_owned();
     }
@@ -35,12 +49,12 @@ pub(crate) fn short(x: f64) -> String {
         .to_owned();
     }
     // Rounding may carry into the next decade: the exponent is read from what is written.
-    let scientific = format!("{:.2e}", x.abs());
+    let scientific = format!("{:.*e}", digits - 1, x.abs());
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
     let sign = if x < 0.0 { "−" } else { "" };
     if (-3..5).contains(&exponent) {
-        let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
         format!("{sign}{:.decimals$}", x.abs())
     } else {
         format!("{sign}{mantissa}·{}", power_of_ten(exponent))
@@ -85,6 +99,14 @@ mod tests {
         for (x, text) in cases {
             assert_eq!(short(x), text);
         }
+    }
+
+    #[test]
+    fn an_interval_decides_how_many_digits_are_told() {
+        assert_eq!(measured(0.818_731, [0.818_53, 0.818_93]), "0.81873 [0.81853, 0.81893]");
+        assert_eq!(measured(5.0, [1.0, 9.0]), "5.00 [1.00, 9.00]");
+        assert_eq!(measured(1.0, [1.0, 1.0]), "1.00 [1.00, 1.00]");
+        assert_eq!(measured(0.0, [-0.1, f64::INFINITY]), "0 [−0.100, ∞]");
     }
 
     #[test]

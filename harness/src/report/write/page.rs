@@ -1,6 +1,6 @@
 //! `index.html`: one file that needs no other. Figures are inline SVG, images inline PNG; links lead to the files beside it.
 
-use super::super::result::{ClaimVerdict, MediumReport, Report, SweepCurve};
+use super::super::result::{Claim, ClaimVerdict, MediumReport, Report, SweepCurve};
 use super::colour_map;
 use super::figure::Finished;
 use super::images::{Exhibit, Gallery, Picture};
@@ -13,17 +13,22 @@ use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value, context};
 use serde::Serialize;
 
-const TEMPLATE: &str = include_str!("page.html");
-const STYLE: &str = include_str!("page.css");
+const TEMPLATES: [(&str, &str); 3] = [
+    ("parts", include_str!("page/parts.html")),
+    ("standard", include_str!("page/standard.html")),
+    ("document", include_str!("page/document.html")),
+];
+const STYLE: &str = include_str!("page/style.css");
 /// Stops of the gradient that stands for the diverging map.
 const STOPS: i32 = 16;
 
+/// A drawing with its caption.
 #[derive(Serialize)]
-struct FigureView<'a> {
-    id: &'a str,
-    title: &'a str,
-    caption: &'a str,
-    svg: String,
+pub(super) struct FigureView<'a> {
+    pub(super) id: &'a str,
+    pub(super) title: &'a str,
+    pub(super) caption: &'a str,
+    pub(super) svg: String,
 }
 
 #[derive(Serialize)]
@@ -46,15 +51,15 @@ struct GalleryView<'a> {
     exact_error: String,
     width: usize,
     height: usize,
-    exact: PictureView<'a>,
+    exact: PictureView,
     panels: Vec<ExhibitView<'a>>,
 }
 
 #[derive(Serialize)]
 struct ExhibitView<'a> {
     label: &'a str,
-    estimate: PictureView<'a>,
-    error: PictureView<'a>,
+    estimate: PictureView,
+    error: PictureView,
     rmse: String,
     interval: [String; 2],
     lookups: String,
@@ -62,14 +67,22 @@ struct ExhibitView<'a> {
     remarks: String,
 }
 
+/// An image that lives in the page, and its file.
 #[derive(Serialize)]
-struct PictureView<'a> {
-    file: &'a str,
+pub(super) struct PictureView {
+    file: String,
     base64: String,
 }
 
+impl PictureView {
+    pub(super) fn new(file: String, bytes: &[u8]) -> Self {
+        Self { file, base64: png::base64(bytes) }
+    }
+}
+
+/// A line of the ledger.
 #[derive(Serialize)]
-struct ClaimView<'a> {
+pub(super) struct ClaimView<'a> {
     id: &'a str,
     claim: &'a str,
     source: &'a str,
@@ -79,34 +92,33 @@ struct ClaimView<'a> {
     words: &'static str,
 }
 
+/// Fills a template; all share the parts and the style.
+pub(super) fn render(template: &str, values: Value) -> Result<String, String> {
+    let mut environment = Environment::new();
+    environment.set_auto_escape_callback(|_| AutoEscape::Html);
+    environment.add_filter("typeset", typeset);
+    for (name, source) in TEMPLATES {
+        environment.add_template(name, source).map_err(|error| error.to_string())?;
+    }
+    let style = Value::from_safe_string(STYLE.to_owned());
+    let page = environment
+        .get_template(template)
+        .and_then(|template| template.render(context! { style => style, ..values }));
+    // The imports of a template leave empty lines.
+    page.map(|page| page.trim_start().to_owned()).map_err(|error| format!("the page: {error}"))
+}
+
 /// The page.
 pub(super) fn html(
     report: &Report,
     figures: &[Finished],
     galleries: &[Gallery<'_>],
 ) -> Result<String, String> {
-    let mut environment = Environment::new();
-    environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    environment.add_filter("typeset", typeset);
-    environment.add_template("page", TEMPLATE).map_err(|error| error.to_string())?;
     let media: Vec<MediumView<'_>> =
         report.media.iter().map(|part| medium(part, figures, galleries)).collect();
-    let claims: Vec<ClaimView<'_>> = report
-        .claims
-        .iter()
-        .map(|claim| ClaimView {
-            id: &claim.id,
-            claim: &claim.claim,
-            source: &claim.source,
-            measured: &claim.measured,
-            comment: &claim.comment,
-            verdict: claim.verdict,
-            words: markdown::verdict(claim.verdict),
-        })
-        .collect();
-    let page = environment.get_template("page").and_then(|template| {
-        template.render(context! {
-            style => Value::from_safe_string(STYLE.to_owned()),
+    render(
+        "standard",
+        context! {
             provenance => Serde(&report.provenance),
             quick => report.quick,
             seconds => short(report.seconds),
@@ -116,15 +128,24 @@ pub(super) fn html(
             arrows => markdown::ARROWS,
             stability => Serde(&report.stability),
             media => Serde(&media),
-            claims => Serde(&claims),
-        })
-    });
-    page.map_err(|error| format!("the page: {error}"))
+            claims => Serde(&claims(&report.claims)),
+        },
+    )
+}
+
+/// The ledger with its verdicts in words.
+pub(super) fn claims(claims: &[Claim]) -> Vec<ClaimView<'_>> {
+    fn view(claim: &Claim) -> ClaimView<'_> {
+        let Claim { id, claim, source, measured, verdict, comment } = claim;
+        let words = markdown::verdict(*verdict);
+        ClaimView { id, claim, source, measured, comment, verdict: *verdict, words }
+    }
+    claims.iter().map(view).collect()
 }
 
 /// Greek with an index reads better typeset. Everything else of the text is escaped.
 fn typeset(text: &str) -> Value {
-    let mut escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let mut escaped = escaped(text);
     for index in ["samp", "main", "diff", "t"] {
         // The longer names come first; a name ends where its letters do.
         for name in [format!("σ_{index}"), format!("sigma_{index}")] {
@@ -132,6 +153,10 @@ fn typeset(text: &str) -> Value {
         }
     }
     Value::from_safe_string(escaped)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 fn medium<'a>(
@@ -168,26 +193,35 @@ fn medium<'a>(
 }
 
 fn figure_view(figure: &Finished) -> FigureView<'_> {
-    // An inline SVG needs no name space, and its size is the page's affair.
-    let svg = figure.drawing.svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    let label = figure.title.replace('"', "");
-    let svg = svg.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{label}\" "), 1);
+    let svg = inline(&figure.drawing.svg, &figure.title);
     FigureView { id: &figure.id, title: &figure.title, caption: &figure.caption, svg }
 }
 
-fn gallery_view<'a>(gallery: &'a Gallery<'_>) -> GalleryView<'a> {
-    let study = gallery.study;
+/// A drawing for inside the page: it needs no name space, and its size is the page's affair.
+pub(super) fn inline(svg: &str, title: &str) -> String {
+    let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    let label = escaped(title).replace('"', "");
+    svg.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{label}\" "), 1)
+}
+
+/// The diverging map from end to end, as stops of a gradient.
+pub(super) fn gradient() -> String {
     let stops: Vec<String> = (0..=STOPS)
         .map(|k| {
             let (r, g, b) = colour_map::diverging(2.0 * f64::from(k) / f64::from(STOPS) - 1.0);
             format!("rgb({r} {g} {b})")
         })
         .collect();
+    stops.join(", ")
+}
+
+fn gallery_view<'a>(gallery: &'a Gallery<'_>) -> GalleryView<'a> {
+    let study = gallery.study;
     GalleryView {
         id: gallery.id(),
         budget: study.budget.to_string(),
         scale: short(gallery.scale),
-        gradient: stops.join(", "),
+        gradient: gradient(),
         exact_error: short(study.exact_error),
         width: study.resolution[0],
         height: study.resolution[1],
@@ -218,8 +252,8 @@ fn exhibit<'a>(exhibit: &'a Exhibit<'_>) -> ExhibitView<'a> {
     }
 }
 
-fn picture(picture: &Picture) -> PictureView<'_> {
-    PictureView { file: &picture.file, base64: png::base64(&picture.png) }
+fn picture(picture: &Picture) -> PictureView {
+    PictureView::new(picture.file.clone(), &picture.png)
 }
 
 /// What was found on one ray: a sentence and a list, both made of numbers of the report.
@@ -274,18 +308,7 @@ fn item(best: &Optimum<'_>) -> String {
 
 /// The ledger and the verdicts of the sweeps in numbers.
 fn verdicts(report: &Report) -> Vec<String> {
-    use ClaimVerdict::{DoesNotHold, Holds, HoldsUnder, NotTestable};
-    let mut sentences = Vec::new();
-    if !report.claims.is_empty() {
-        let count = |verdict| report.claims.iter().filter(|claim| claim.verdict == verdict).count();
-        let counts = [Holds, HoldsUnder, DoesNotHold, NotTestable]
-            .map(|verdict| format!("{} “{}”", count(verdict), markdown::verdict(verdict)));
-        sentences.push(format!(
-            "Verdicts on {} claims of the papers: {}.",
-            report.claims.len(),
-            listed(&counts)
-        ));
-    }
+    let mut sentences = claim_counts(&report.claims);
     // A baseline is known to be biased: that its test fails is no news.
     let curves =
         || report.media.iter().flat_map(|part| &part.sweeps).filter(|curve| !curve.series.is_baseline());
@@ -301,6 +324,18 @@ fn verdicts(report: &Report) -> Vec<String> {
         ));
     }
     sentences
+}
+
+/// How many claims hold: a sentence, if there are any.
+pub(super) fn claim_counts(claims: &[Claim]) -> Vec<String> {
+    use ClaimVerdict::{DoesNotHold, Holds, HoldsUnder, NotTestable};
+    if claims.is_empty() {
+        return Vec::new();
+    }
+    let count = |verdict| claims.iter().filter(|claim| claim.verdict == verdict).count();
+    let counts = [Holds, HoldsUnder, DoesNotHold, NotTestable]
+        .map(|verdict| format!("{} “{}”", count(verdict), markdown::verdict(verdict)));
+    vec![format!("Verdicts on {} claims of the papers: {}.", claims.len(), listed(&counts))]
 }
 
 #[cfg(test)]

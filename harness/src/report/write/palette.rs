@@ -27,6 +27,14 @@ pub(crate) enum Marker {
 /// Lengths of strokes and gaps in pixels, alternating; empty for a solid line.
 pub(crate) type Dash = &'static [f64];
 
+/// How the line and the marks of a curve look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Style {
+    pub(crate) colour: Rgb,
+    pub(crate) marker: Marker,
+    pub(crate) dash: Dash,
+}
+
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
@@ -38,6 +46,13 @@ pub(crate) struct Look {
     pub(crate) marker: Marker,
     /// Dash of lines.
     pub(crate) dash: Dash,
+}
+
+impl Look {
+    /// The look without the name.
+    pub(crate) fn style(&self) -> Style {
+        Style { colour: self.colour, marker: self.marker, dash: self.dash }
+    }
 }
 
 /// Every series, in the order of legends and tables.

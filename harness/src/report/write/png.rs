@@ -1,5 +1,6 @@
 //! Small PNG files: indexed colours for line art and error maps, eight-bit grey for transmittance.
 
+use super::median_cut;
 use std::collections::HashMap;
 
 /// Colours of a drawing: series, inks, and the blends on the edges of lines.
@@ -23,10 +24,23 @@ pub(crate) fn indexed(rgb: &[u8], [width, height]: [usize; 2], colours: usize) -
     // Ties are broken by colour: the file must not depend on the order of a hash map.
     frequent.sort_unstable_by_key(|&(colour, count)| (std::cmp::Reverse(count), colour));
     let palette: Vec<[u8; 3]> = frequent.iter().take(colours.min(IMAGE)).map(|&(colour, _)| colour).collect();
-    let index: HashMap<[u8; 3], u8> =
-        frequent.iter().map(|&(colour, _)| (colour, nearest(&palette, colour))).collect();
-    let indices: Vec<u8> = triples.iter().map(|colour| index[colour]).collect();
-    encode(&indices, [width, height], Some(palette.as_flattened()))
+    with_palette(triples, &palette, [width, height])
+}
+
+/// Encodes RGB triples of a picture, row 0 on top: exactly if they are few enough for a palette, else with the nearest colours of
+/// a palette that is made for them.
+pub(crate) fn few_colours(rgb: &[u8], size: [usize; 2]) -> Result<Vec<u8>, String> {
+    let (triples, _) = rgb.as_chunks::<3>();
+    with_palette(triples, &median_cut::palette(triples, IMAGE), size)
+}
+
+fn with_palette(triples: &[[u8; 3]], palette: &[[u8; 3]], size: [usize; 2]) -> Result<Vec<u8>, String> {
+    let mut index: HashMap<[u8; 3], u8> = HashMap::new();
+    let indices: Vec<u8> = triples
+        .iter()
+        .map(|&colour| *index.entry(colour).or_insert_with(|| nearest(palette, colour)))
+        .collect();
+    encode(&indices, size, Some(palette.as_flattened()))
 }
 
 fn nearest(palette: &[[u8; 3]], colour: [u8; 3]) -> u8 {

@@ -1,6 +1,6 @@
 //! The legend below the panels: it covers no data.
 
-use super::super::palette::{Rgb, look, rank};
+use super::super::palette::{Rgb, Style, look, rank};
 use super::canvas::{Canvas, Drawn, Stroke, Text};
 use super::marks::Fill;
 use super::{FAINT, INK};
@@ -15,8 +15,8 @@ const GAP: f64 = 30.0;
 /// What stands in front of an entry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Sign {
-    /// Line and mark of a series.
-    Series(Series),
+    /// Line and mark of a curve.
+    Curve(Style),
     /// A line alone.
     Line(Stroke),
     /// A shaded area.
@@ -44,9 +44,14 @@ impl Legend {
         let mut known: Vec<Series> = series.into_iter().collect();
         known.sort_by_key(|&series| rank(series));
         known.dedup();
-        let series = known.into_iter().map(|series| (Sign::Series(series), look(series).name.to_owned()));
+        let series =
+            known.into_iter().map(look).map(|look| (Sign::Curve(look.style()), look.name.to_owned()));
         let remarks = remarks.iter().map(|&(sign, text)| (sign, text.to_owned()));
-        let entries: Vec<(Sign, String)> = series.chain(remarks).collect();
+        Self::of(series.chain(remarks).collect(), width)
+    }
+
+    /// These entries, in their order.
+    pub(crate) fn of(entries: Vec<(Sign, String)>, width: f64) -> Self {
         let longest = entries.iter().map(|(_, text)| Text::LABEL.width_of(text)).fold(0.0, f64::max);
         let columns = ((width + GAP) / (KEY + longest + GAP)).floor().clamp(1.0, 4.0) as usize;
         Self { entries, columns, width }
@@ -89,10 +94,9 @@ fn draw_sign<DB: DrawingBackend>(canvas: &Canvas<DB>, sign: Sign, (x, y): (f64, 
     let line = [(x, y), (x + KEY - 16.0, y)];
     let middle = (x + (KEY - 16.0) / 2.0, y);
     match sign {
-        Sign::Series(series) => {
-            let look = look(series);
-            canvas.line(&line, Stroke { colour: look.colour, width: 3.0, dash: look.dash })?;
-            canvas.mark(look.marker, middle, 8.0, look.colour, Fill::Solid)
+        Sign::Curve(style) => {
+            canvas.line(&line, Stroke { colour: style.colour, width: 3.0, dash: style.dash })?;
+            canvas.mark(style.marker, middle, 8.0, style.colour, Fill::Solid)
         }
         Sign::Line(stroke) => canvas.line(&line, stroke),
         Sign::Area(colour, opacity) => {

@@ -161,11 +161,20 @@ impl Panel {
 
     /// A dashed vertical line; the legend says what it is.
     pub(crate) fn vertical<DB: DrawingBackend>(&self, canvas: &Canvas<DB>, x: f64) -> Drawn {
+        self.vertical_of(canvas, x, Stroke { colour: FAINT, width: 2.0, dash: &[6.0, 6.0] })
+    }
+
+    /// A vertical line of this look.
+    pub(crate) fn vertical_of<DB: DrawingBackend>(
+        &self,
+        canvas: &Canvas<DB>,
+        x: f64,
+        stroke: Stroke,
+    ) -> Drawn {
         if !self.x.shows(x) {
             return Ok(());
         }
         let at = self.place(x, self.y.range()[0]).0;
-        let stroke = Stroke { colour: FAINT, width: 2.0, dash: &[6.0, 6.0] };
         canvas.line(&[(at, self.rect.top), (at, self.rect.bottom)], stroke)
     }
 

@@ -78,13 +78,13 @@ const WIDTH: u32 = 1600;
 const LEFT: f64 = 144.0;
 const RIGHT: f64 = 1600.0 - 28.0;
 /// Below the panels: labels and title of the x axis.
-const FOOT: f64 = 100.0;
+pub(super) const FOOT: f64 = 100.0;
 /// Where a legend begins.
-const LEGEND_LEFT: f64 = 40.0;
-const LEGEND_WIDTH: f64 = 1600.0 - 2.0 * LEGEND_LEFT;
+pub(super) const LEGEND_LEFT: f64 = 40.0;
+pub(super) const LEGEND_WIDTH: f64 = 1600.0 - 2.0 * LEGEND_LEFT;
 
 /// The rectangle of the panels, and the size of a figure that has a legend below them.
-fn frame(top: f64, height: f64, legend: &Legend) -> (Rect, [u32; 2]) {
+pub(super) fn frame(top: f64, height: f64, legend: &Legend) -> (Rect, [u32; 2]) {
     let bottom = top + height;
     let whole = bottom + FOOT + legend.height() + 16.0;
     (Rect { left: LEFT, top, right: RIGHT, bottom }, [WIDTH, whole as u32])

@@ -1,0 +1,223 @@
+//! Whether a walk has a second moment: the criticality of its squared energy.
+
+use crate::{SamplingExtinction, Walk};
+use fairflight_collision::CollisionModel;
+use fairflight_media::{Extinction, Line, Medium, PhaseFunction, Ray};
+use fairflight_scene::{Spectrum, Volume};
+use fairflight_sources::UniformSource;
+use glam::DVec3;
+
+/// By how much the expected squared energy of the particles in the medium grows from one collision to the next.
+///
+/// The k-th collision of a walk with energy E contributes E\[E_k²; still inside\] to the second moment of every score; these
+/// fall as factor^k where the walk is subcritical, and the sum diverges where factor ≥ 1. In an endless medium the factor of the
+/// non-terminating version is E\[q_sum²\], above 1 where r > 2/(1 + a) often enough; leaking out of the bounds lowers it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// The factor per collision, as measured.
+    pub factor: f64,
+    /// Its standard error, from independent populations.
+    pub standard_error: f64,
+}
+
+/// What follows from a [`Growth`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criticality {
+    /// The second moment exists: the factor is below 1 by four standard errors.
+    Subcritical,
+    /// The measurement cannot tell.
+    Unclear,
+    /// No second moment: the factor is above 1 by four standard errors.
+    Supercritical,
+}
+
+impl Growth {
+    /// Below, above, or neither by four standard errors.
+    #[must_use]
+    pub fn criticality(&self) -> Criticality {
+        let margin = 4.0 * self.standard_error;
+        if self.factor + margin < 1.0 {
+            Criticality::Subcritical
+        } else if self.factor - margin > 1.0 {
+            Criticality::Supercritical
+        } else {
+            Criticality::Unclear
+        }
+    }
+}
+
+/// Independent populations.
+const POPULATIONS: usize = 8;
+/// Particles of each.
+const PARTICLES: usize = 512;
+/// Collisions before the populations have forgotten where they started, and collisions that are measured.
+const SETTLING: u32 = 20;
+const MEASURED: u32 = 30;
+
+/// Estimates the growth in `volume` by power iteration, as neutron transport estimates a multiplication factor: a population of
+/// particles makes one collision at a time; each then counts E\[W²\] of its branches, and as many particles as before are
+/// chosen in proportion to what they count. The mean count over the generations is the factor.
+///
+/// The particles start uniformly in the ball around the bounds, isotropically. What is estimated is a property of the medium, not
+/// of a camera: the slowest mode to die out. `None` where no collision ever happened: an empty medium.
+pub fn second_moment_growth<M, P, C, R, S>(
+    volume: &Volume<M, P, C>,
+    walk: &Walk<R>,
+    source: &mut S,
+) -> Option<Growth>
+where
+    M: Medium,
+    P: PhaseFunction,
+    C: Spectrum,
+    R: SamplingExtinction,
+    S: UniformSource + ?Sized,
+{
+    let factors: Vec<f64> = (0..POPULATIONS).filter_map(|_| population(volume, walk, source)).collect();
+    if factors.len() < 2 {
+        return None;
+    }
+    let n = factors.len() as f64;
+    let factor = factors.iter().sum::<f64>() / n;
+    let variance = factors.iter().map(|f| (f - factor) * (f - factor)).sum::<f64>() / (n - 1.0);
+    Some(Growth { factor, standard_error: (variance / n).sqrt() })
+}
+
+/// The mean count per generation of one population; `None` once nobody is left.
+fn population<M, P, C, R, S>(volume: &Volume<M, P, C>, walk: &Walk<R>, source: &mut S) -> Option<f64>
+where
+    M: Medium,
+    P: PhaseFunction,
+    C: Spectrum,
+    R: SamplingExtinction,
+    S: UniformSource + ?Sized,
+{
+    let (model, _) = walk.collisions(volume);
+    let mut particles: Vec<Line> = (0..PARTICLES).map(|_| start(volume, source)).collect();
+    let mut next: Vec<(Line, f64)> = Vec::with_capacity(2 * PARTICLES);
+    let mut sum = 0.0;
+    for generation in 0..SETTLING + MEASURED {
+        next.clear();
+        let mut count = 0.0;
+        for &line in &particles {
+            let ray: Ray<&M> = volume.inside(line);
+            let depth = source.next_exponential();
+            let Some((s, sigma_samp)) = walk.sampling().fly(&line, 0.0, ray.length(), depth) else {
+                continue;
+            };
+            let r = ray.sigma_t(s) / sigma_samp;
+            let origin = ray.world_point(s);
+            // Both branches, each with its share of the second moment: no need to choose.
+            let (scattered, transmitted) = (model.scattered(r).moment(2), model.transmitted(r).moment(2));
+            count += scattered + transmitted;
+            if scattered > 0.0 {
+                let (u, v) = (source.next_uniform(), source.next_uniform());
+                let direction = volume.phase.sample(line.direction, u, v).direction;
+                next.push((Line { origin, direction }, scattered));
+            }
+            next.push((Line { origin, ..line }, transmitted));
+        }
+        if count <= 0.0 || !count.is_finite() {
+            return None;
+        }
+        if generation >= SETTLING {
+            sum += count / PARTICLES as f64;
+        }
+        resample(&next, count, &mut particles, source);
+    }
+    Some(sum / f64::from(MEASURED))
+}
+
+/// As many particles as before, each in proportion to what it counts: systematic resampling with one variate.
+fn resample<S: UniformSource + ?Sized>(
+    from: &[(Line, f64)],
+    count: f64,
+    particles: &mut [Line],
+    source: &mut S,
+) {
+    let shift = source.next_uniform();
+    let mut entries = from.iter();
+    let mut chosen = entries.next();
+    let mut reached = chosen.map_or(0.0, |entry| entry.1);
+    let total = particles.len() as f64;
+    for (k, particle) in particles.iter_mut().enumerate() {
+        let target = (k as f64 + shift) / total * count;
+        while reached <= target {
+            let Some(entry) = entries.next() else { break };
+            chosen = Some(entry);
+            reached += entry.1;
+        }
+        if let Some((line, _)) = chosen {
+            *particle = *line;
+        }
+    }
+}
+
+/// A point inside the bounds and a direction, both uniform.
+fn start<M, P, C, S: UniformSource + ?Sized>(volume: &Volume<M, P, C>, source: &mut S) -> Line {
+    let (center, radius) = volume.bounds.enclosing_ball();
+    // Rejection: the bounds fill a share of their ball; flat ones are met by their middle.
+    const TRIES: u32 = 10_000;
+    let mut unit = || {
+        let mut draw = || 2.0 * source.next_uniform() - 1.0;
+        DVec3::new(draw(), draw(), draw())
+    };
+    let mut in_ball = || loop {
+        let point = unit();
+        let squared = point.length_squared();
+        if squared <= 1.0 && squared > 0.0 {
+            return point;
+        }
+    };
+    let direction = in_ball().normalize();
+    for _ in 0..TRIES {
+        let origin = center + radius * in_ball();
+        if volume.bounds.contains(origin) {
+            return Line { origin, direction };
+        }
+    }
+    Line { origin: center, direction }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Uniform;
+    use fairflight_collision::Version;
+    use fairflight_media::phase::Isotropic;
+    use fairflight_media::{Bounds, Homogeneous};
+    use fairflight_sources::Seeded;
+
+    fn growth(sigma_t: f64, radius: f64, albedo: f64, sigma_samp: f64, version: Version) -> Growth {
+        let volume = Volume {
+            medium: Homogeneous::new(sigma_t).unwrap(),
+            bounds: Bounds::sphere(DVec3::ZERO, radius).unwrap(),
+            albedo,
+            phase: Isotropic,
+        };
+        let walk = Walk::new(version, Uniform::new(sigma_samp).unwrap());
+        second_moment_growth(&volume, &walk, &mut Seeded::new(5)).unwrap()
+    }
+
+    #[test]
+    fn in_a_large_medium_it_is_the_square_of_q_sum() {
+        // r = 1.5, a = 0.8: q_sum = 1.7 per collision, and hardly anything leaks from 2000 mean free paths.
+        let growth = growth(1.5, 2000.0, 0.8, 1.0, Version::NonTerminating);
+        assert!((growth.factor - 1.7 * 1.7).abs() < 0.02, "{growth:?}");
+        assert_eq!(growth.criticality(), Criticality::Supercritical);
+    }
+
+    #[test]
+    fn terminating_grows_by_its_survivors() {
+        // r = 1.05 ≤ 2/1.8: energies are ±1, a r + r − 1 = 0.89 survive.
+        let growth = growth(1.05, 2000.0, 0.8, 1.0, Version::Terminating);
+        assert!((growth.factor - 0.89).abs() < 0.01, "{growth:?}");
+        assert_eq!(growth.criticality(), Criticality::Subcritical);
+    }
+
+    #[test]
+    fn a_small_medium_leaks() {
+        // The same r as the supercritical one, in half a mean free path.
+        let growth = growth(1.5, 0.2, 0.8, 1.0, Version::NonTerminating);
+        assert_eq!(growth.criticality(), Criticality::Subcritical);
+    }
+}

@@ -1,0 +1,62 @@
+//! Pictures side by side.
+
+use serde::Serialize;
+
+/// Pictures that are compared with each other.
+#[derive(Clone, Debug, Serialize)]
+pub struct Gallery {
+    /// Its place in the page.
+    pub id: String,
+    /// One line.
+    pub title: String,
+    /// What is seen. How values become colours is said by the writers.
+    pub caption: String,
+    /// The rows, one per method or per budget.
+    pub rows: Vec<GalleryRow>,
+}
+
+/// A row of a gallery.
+#[derive(Clone, Debug, Serialize)]
+pub struct GalleryRow {
+    /// What its pictures have in common; may be empty.
+    pub label: String,
+    /// The pictures.
+    pub pictures: Vec<Picture>,
+}
+
+/// A picture. Its pixels are in its file only.
+#[derive(Clone, Debug, Serialize)]
+pub struct Picture {
+    /// Name of its file without ending.
+    pub id: String,
+    /// What it shows.
+    pub label: String,
+    /// Numbers below it, one line each.
+    pub lines: Vec<String>,
+    /// Width and height in pixels.
+    pub resolution: [usize; 2],
+    /// The values, and how they become colours.
+    pub pixels: Pixels,
+}
+
+/// The values of a picture, row 0 on top, and how they become colours.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "mapping", rename_all = "snake_case")]
+pub enum Pixels {
+    /// Radiance in linear RGB: sRGB encoding of clamp(exposure · L, 0, 1).
+    Radiance {
+        /// In any one unit of radiance.
+        #[serde(skip)]
+        values: Vec<[f64; 3]>,
+        /// In one over that unit.
+        exposure: f64,
+    },
+    /// Differences: from blue at −scale over white at 0 to orange at +scale, the end colours beyond.
+    Signed {
+        /// In any one unit.
+        #[serde(skip)]
+        values: Vec<f64>,
+        /// In that unit; the same for all pictures that are to be compared.
+        scale: f64,
+    },
+}

@@ -1,0 +1,80 @@
+//! A report as a document: sections of text, charts, tables and pictures, whatever was studied.
+//!
+//! A study fills a [`Document`]; one set of writers turns any of them into files. The standard report has a structure of its own,
+//! because its figures share one sweep.
+
+mod chart;
+mod gallery;
+mod table;
+
+pub use chart::{Axis, Band, Chart, Curve, Mark, Point, Role, Scale, Vertical};
+pub use gallery::{Gallery, GalleryRow, Picture, Pixels};
+pub use table::{Cell, Column, Table};
+
+use super::result::Claim;
+use crate::result::Provenance;
+use serde::Serialize;
+
+/// The choices of whoever asks for a document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Fewer points and samples.
+    pub quick: bool,
+    /// The seed of all variates.
+    pub seed: u64,
+    /// The threads that measure, for the record: no number but a time depends on them.
+    pub threads: usize,
+}
+
+/// A whole report. All its texts are plain: writers escape what their format needs, and typeset σ_t and its like.
+#[derive(Clone, Debug, Serialize)]
+pub struct Document {
+    /// Where the numbers come from.
+    pub provenance: Provenance,
+    /// The name by which the report is asked for.
+    pub name: String,
+    /// What it is about, in one line.
+    pub title: String,
+    /// The findings, one paragraph each, made of numbers of this document.
+    pub summary: Vec<String>,
+    /// Whether this is the quick version, with fewer samples.
+    pub quick: bool,
+    /// Wall-clock seconds of the whole measurement.
+    pub seconds: f64,
+    /// Threads that measured.
+    pub threads: usize,
+    /// What was expected of unbiased estimators and is not so, one sentence each; empty if all is sound.
+    pub unsound: Vec<String>,
+    /// The ledger of the papers' claims.
+    pub claims: Vec<Claim>,
+    /// The parts, in reading order.
+    pub sections: Vec<Section>,
+}
+
+/// A part of a document: its text first, then its charts, tables and galleries.
+///
+/// The ids of sections, charts, tables, galleries and pictures are names of files and places in the page: lower case letters,
+/// digits, hyphens and points, each once in a document.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Section {
+    /// Its place in the page.
+    pub id: String,
+    /// Its heading.
+    pub title: String,
+    /// Paragraphs.
+    pub text: Vec<String>,
+    /// Drawings.
+    pub charts: Vec<Chart>,
+    /// Tables.
+    pub tables: Vec<Table>,
+    /// Pictures.
+    pub galleries: Vec<Gallery>,
+}
+
+impl Section {
+    /// A section without contents.
+    #[must_use]
+    pub fn new(id: &str, title: &str) -> Self {
+        Self { id: id.to_owned(), title: title.to_owned(), ..Self::default() }
+    }
+}

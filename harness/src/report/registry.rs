@@ -1,0 +1,40 @@
+//! The reports that there are, by name.
+
+use super::document::{Document, Options};
+use crate::{Environment, Failure};
+
+/// A report that can be asked for.
+pub(crate) struct ReportKind {
+    /// Its name on the command line, and of its folder.
+    pub(crate) name: &'static str,
+    /// What it is about, for `harness list`.
+    pub(crate) about: &'static str,
+    /// How it is measured.
+    pub(crate) study: Study,
+}
+
+/// How a report is measured.
+#[derive(Clone, Copy)]
+pub(crate) enum Study {
+    /// The standard report, which has a structure of its own and takes a volume.
+    Standard,
+    /// A document, measured on the threads of the current pool.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the first study that is a document brings its entry"))]
+    Document(fn(&Options, &Environment) -> Result<Document, Failure>),
+}
+
+/// All reports; the first is the default.
+pub(crate) const REPORTS: [ReportKind; 1] = [ReportKind {
+    name: "standard",
+    about: "transmittance estimators against their closed forms",
+    study: Study::Standard,
+}];
+
+/// The report of this name.
+pub(crate) fn find(name: &str) -> Result<&'static ReportKind, Failure> {
+    let known = REPORTS.each_ref().map(|kind| kind.name).join(", ");
+    REPORTS
+        .iter()
+        .find(|kind| kind.name == name)
+        .ok_or_else(|| Failure::refused(format!("report {name}: must be one of {known}")))
+}

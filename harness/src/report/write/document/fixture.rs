@@ -1,0 +1,149 @@
+//! A small made-up document with every kind of content, and trouble: gaps, zeros, curves that leave, wide intervals, clipped pixels.
+
+use crate::report::document::*;
+use crate::report::result::{Claim, ClaimVerdict};
+use crate::result::Provenance;
+
+/// The document.
+pub(crate) fn document() -> Document {
+    let mut measured = Section::new("measured", "Measured");
+    measured.text = vec!["A paragraph on σ_samp with <markup> & more.".to_owned()];
+    measured.charts = vec![variance(), shares()];
+    measured.tables = vec![table()];
+    let mut pictures = Section::new("pictures", "Pictures");
+    pictures.galleries = vec![gallery([12, 8])];
+    Document {
+        provenance: Provenance {
+            seed: 1,
+            revision: "0".to_owned(),
+            command: "harness report made-up".to_owned(),
+        },
+        name: "made-up".to_owned(),
+        title: "A made-up study of <nothing>".to_owned(),
+        summary: vec!["The first finding.".to_owned(), "The second | finding.".to_owned()],
+        quick: true,
+        seconds: 1.5,
+        threads: 2,
+        unsound: Vec::new(),
+        claims: vec![Claim {
+            id: "M1".to_owned(),
+            claim: "a claim | with a bar".to_owned(),
+            source: "paper, eq. 1".to_owned(),
+            measured: "1.0 [0.9, 1.1]".to_owned(),
+            verdict: ClaimVerdict::HoldsUnder,
+            comment: String::new(),
+        }],
+        sections: vec![measured, pictures],
+    }
+}
+
+fn variance() -> Chart {
+    let x = |k: u32| 10_f64.powf(f64::from(k) / 8.0 - 1.0);
+    let mut chart = Chart::new(
+        "variance",
+        "Relative variance against σ_samp",
+        Axis::logarithmic("σ_samp [1/length]"),
+        Axis::logarithmic("relative variance Var/T² [1]"),
+    );
+    chart.caption = "Made up: lines are closed forms.".to_owned();
+    for (shift, label) in
+        ["Woodcock", "weighted, no cut-off", "weighted, with a cut-off", "spectral"].iter().enumerate()
+    {
+        let y = |k: u32| 3.0_f64.powi(i32::try_from(shift).unwrap()) / x(k).powi(2);
+        let mut curve = Curve::method(label).with_line((0..=24).map(|k| (x(k), y(k))));
+        // A gap, then zero variance at the end.
+        curve.line[10].y = None;
+        curve.line[24].y = Some(if shift == 3 { 0.0 } else { y(24) });
+        curve.marks = (0..=24)
+            .step_by(4)
+            .map(|k| {
+                let mark = Mark::measured(x(k), 1.05 * y(k), [0.7 * y(k), 1.6 * y(k)]);
+                if k < 8 { mark.hollow() } else { mark }
+            })
+            .collect();
+        // An interval that reaches below zero, and a value above the figure.
+        curve.marks[6].interval = Some([-0.1, 2.0 * y(24)]);
+        chart.curves.push(curve);
+    }
+    chart.y.range = Some([1e-4, 1e3]);
+    chart.verticals = vec![
+        Vertical { x: 1.0, label: "greatest σ_t".to_owned() },
+        Vertical { x: 3.0, label: "mean of the majorant".to_owned() },
+    ];
+    chart.bands = vec![Band { from: 1.6, to: 2.6, label: "best per look-up, 95 % interval".to_owned() }];
+    chart
+}
+
+fn shares() -> Chart {
+    let mut chart = Chart::new(
+        "shares",
+        "A share against distance",
+        Axis::linear("distance [length]"),
+        Axis::linear("escaped [1]"),
+    );
+    chart.caption = "Made up.".to_owned();
+    let exact =
+        Curve::reference("exact", (0..=50).map(|k| (f64::from(k) / 10.0, (-f64::from(k) / 10.0).exp())));
+    let marks = (0..=10).map(|k| {
+        let y = (-f64::from(k) / 2.0).exp();
+        Mark::measured(f64::from(k) / 2.0, y + 0.01, [y - 0.03, y + 0.05])
+    });
+    // The same names as in the other chart: the same looks.
+    chart.curves = vec![exact, Curve::method("spectral").with_marks(marks)];
+    chart
+}
+
+fn table() -> Table {
+    let columns =
+        [("method", ""), ("samples", ""), ("mean", "1"), ("time", "s"), ("sound", ""), ("efficiency", "1/s")];
+    let mut table = Table::new("numbers", "Numbers | of it", "What was measured.", &columns);
+    for (k, label) in ["Woodcock", "spectral | with bar"].into_iter().enumerate() {
+        table.rows.push(vec![
+            Cell::text(label),
+            Cell::Count(100_000),
+            Cell::measured(0.818_731, [0.818_53, 0.818_93]),
+            Cell::Number(0.1234),
+            Cell::Flag(k == 0),
+            Cell::maybe((k == 0).then_some(1.5e6)),
+        ]);
+    }
+    table
+}
+
+/// Pictures of this resolution: coloured, grey, and a difference.
+pub(crate) fn gallery(resolution: [usize; 2]) -> Gallery {
+    let pixels = || {
+        let [width, height] = resolution;
+        (0..width * height)
+            .map(move |k| ((k % width) as f64 / width as f64, (k / width) as f64 / height as f64))
+    };
+    // A hash instead of a source: noise that needs no seed.
+    let noise = |u: f64, v: f64| (12.9898 * u + 78.233 * v).sin().abs() * 43_758.545_3 % 1.0;
+    let picture = |id: &str, label: &str, pixels| Picture {
+        id: id.to_owned(),
+        label: label.to_owned(),
+        lines: vec!["RMSE 0.10 [0.09, 0.11]".to_owned(), "2.50 look-ups per pixel".to_owned()],
+        resolution,
+        pixels,
+    };
+    let radiance = |values| Pixels::Radiance { values, exposure: 2.0 };
+    let coloured = pixels().map(|(u, v)| [0.6 * u, 0.4 * v, 0.5 * (1.0 - u)]).collect();
+    let noisy = pixels().map(|(u, v)| [0.5 * u + 0.2 * noise(u, v) - 0.05; 3]).collect();
+    let signed = pixels().map(|(u, v)| 0.3 * (noise(u, v) - 0.5) * (1.0 + u)).collect();
+    Gallery {
+        id: "looks".to_owned(),
+        title: "Equal cost".to_owned(),
+        caption: "Made up.".to_owned(),
+        rows: vec![
+            GalleryRow {
+                label: "Spectral".to_owned(),
+                pictures: vec![
+                    picture("looks-coloured", "coloured", radiance(coloured)),
+                    picture("looks-grey", "grey", radiance(noisy)),
+                    picture("looks-error", "grey, error", Pixels::Signed { values: signed, scale: 0.2 }),
+                ],
+            },
+            GalleryRow { label: String::new(), pictures: Vec::new() },
+        ],
+    }
+}

@@ -1,0 +1,174 @@
+//! Tests over whole folders.
+
+use super::super::write_all_or_nothing;
+use super::*;
+use crate::report::document::{Chart, GalleryRow, Picture};
+use std::fs;
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+fn written() -> tempfile::TempDir {
+    let root = tempfile::tempdir().unwrap();
+    write_all_or_nothing(&fixture::document(), &root.path().join("made-up")).unwrap();
+    assert_eq!(names(root.path()), ["made-up"]);
+    root
+}
+
+#[test]
+fn a_folder_has_every_format_and_makes_way_for_the_next() {
+    let root = written();
+    let folder = root.path().join("made-up");
+    let mut expected: Vec<String> =
+        ["index.html", "results.json", "tables.md", "numbers.csv"].map(str::to_owned).to_vec();
+    for chart in ["variance", "shares"] {
+        expected.extend(["svg", "png", "csv"].map(|ending| format!("{chart}.{ending}")));
+    }
+    expected.extend(["coloured", "grey", "error"].map(|name| format!("looks-{name}.png")));
+    expected.sort();
+    assert_eq!(names(&folder), expected);
+
+    let results: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("results.json")).unwrap()).unwrap();
+    assert_eq!(results["provenance"]["command"], "harness report made-up");
+    let curve = &results["sections"][0]["charts"][0]["curves"][3];
+    assert_eq!(curve["line"][10]["y"], serde_json::Value::Null);
+    assert_eq!(curve["marks"][6]["interval"][0], -0.1);
+    let pixels = &results["sections"][1]["galleries"][0]["rows"][0]["pictures"][2]["pixels"];
+    assert_eq!(*pixels, serde_json::json!({ "mapping": "signed", "scale": 0.2 }));
+
+    // It is recognised as a report of ours, and replaced.
+    write_all_or_nothing(&fixture::document(), &folder).unwrap();
+    assert_eq!(names(root.path()), ["made-up"]);
+}
+
+#[test]
+fn a_csv_has_one_row_per_point_and_numbers_that_read_back() {
+    let root = written();
+    let read = |name: &str| fs::read_to_string(root.path().join("made-up").join(name)).unwrap();
+    let variance = read("variance.csv");
+    assert_eq!(variance.lines().count(), 1 + 4 * (25 + 7));
+    let marks: Vec<&str> = variance.lines().filter(|line| line.starts_with("Woodcock,mark,")).collect();
+    let mark = &fixture::document().sections[0].charts[0].curves[0].marks[3];
+    let cells: Vec<&str> = marks[3].split(',').collect();
+    assert_eq!(cells[2].parse(), Ok(mark.x));
+    assert_eq!(cells[4].parse(), Ok(mark.interval.unwrap()[0]));
+    assert!(marks[0].ends_with(",false") && marks[3].ends_with(",true"));
+
+    let numbers = read("numbers.csv");
+    assert!(numbers.lines().all(|line| line.split(',').count() == 8), "{numbers}");
+    assert!(numbers.contains("Woodcock,100000,0.818731,0.81853,0.81893,0.1234,true,1500000\n"), "{numbers}");
+}
+
+#[test]
+fn the_page_needs_no_network_and_its_links_lead_somewhere() {
+    let root = written();
+    let folder = root.path().join("made-up");
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert!(page.starts_with("<!doctype html>"));
+    assert!(!page.contains("http://") && !page.contains("https://"));
+    let mut files = Vec::new();
+    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
+        match link.strip_prefix('#') {
+            Some(id) => assert!(page.contains(&format!("id=\"{id}\"")), "{link}"),
+            None if link.starts_with("data:") => {}
+            None => {
+                assert!(folder.join(link).is_file(), "{link}");
+                files.push(link.to_owned());
+            }
+        }
+    }
+    // Everything beside the page can be reached from it.
+    for name in names(&folder).iter().filter(|name| *name != "index.html") {
+        assert!(files.contains(name), "{name}");
+    }
+    let sources: Vec<&str> = page.split("src=\"").skip(1).collect();
+    assert_eq!(sources.len(), 3);
+    assert!(sources.iter().all(|source| source.starts_with("data:image/png;base64,")));
+    assert!(!page.contains("<markup>") && !page.contains("<nothing>"), "text of the document is escaped");
+    assert!(
+        page.contains("sRGB encoding of 2.00 · L") && page.contains("% of the pixels negative, clipped to 0")
+    );
+    assert!(!page.contains("not sound"));
+}
+
+#[test]
+fn what_is_unsound_is_said_in_the_page_and_in_the_tables() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("made-up");
+    let mut document = fixture::document();
+    document.unsound.push("the mean is 7 standard errors off".to_owned());
+    write_all_or_nothing(&document, &folder).unwrap();
+    for name in ["index.html", "tables.md"] {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        assert!(text.contains("the mean is 7 standard errors off"), "{name}");
+    }
+}
+
+#[test]
+fn tables_keep_their_columns_and_round_by_the_interval() {
+    let tables = markdown::tables(&fixture::document());
+    let line = tables.lines().find(|line| line.starts_with("| spectral")).unwrap();
+    assert_eq!(line, "| spectral \\| with bar | 100000 | 0.81873 [0.81853, 0.81893] | 0.123 | no | — |");
+    let claim = tables.lines().find(|line| line.starts_with("| M1")).unwrap();
+    assert_eq!(claim.replace("\\|", "").matches('|').count(), 7, "{claim}");
+}
+
+#[test]
+fn a_mistake_of_a_study_changes_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let mut document = fixture::document();
+    document.sections[0].tables[0].rows[0].pop();
+    let failure = write_all_or_nothing(&document, &root.path().join("new/made-up")).unwrap_err();
+    assert_eq!(failure.code(), crate::NOT_WRITTEN);
+    assert!(names(root.path()).is_empty());
+}
+
+#[test]
+fn the_same_document_gives_the_same_files() {
+    let (one, other) = (written(), written());
+    for name in names(&one.path().join("made-up")) {
+        let read = |root: &tempfile::TempDir| fs::read(root.path().join("made-up").join(&name)).unwrap();
+        assert!(read(&one) == read(&other), "{name}");
+    }
+}
+
+#[test]
+fn a_document_without_contents_is_still_a_document() {
+    let root = tempfile::tempdir().unwrap();
+    let mut document = fixture::document();
+    document.claims.clear();
+    document.summary.clear();
+    for chart in &mut document.sections[0].charts {
+        (chart.curves, chart.y.range) = (Vec::new(), None);
+    }
+    document.sections[0].tables[0].rows.clear();
+    document.sections[1].galleries[0].rows.clear();
+    write_all_or_nothing(&document, &root.path().join("made-up")).unwrap();
+}
+
+/// Forty noisy pictures are the most that a report of the plan has.
+#[test]
+fn a_folder_of_forty_pictures_is_small() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("made-up");
+    let mut document = fixture::document();
+    let gallery = fixture::gallery([128, 128]);
+    let pictures = &gallery.rows[0].pictures;
+    // The noisy grey one and its error, as in a comparison of methods.
+    let forty = (0..40).map(|k| Picture { id: format!("p-{k}"), ..pictures[1 + k % 2].clone() }).collect();
+    document.sections[1].galleries[0].rows = vec![GalleryRow { label: String::new(), pictures: forty }];
+    for k in 0..6 {
+        let chart = Chart { id: format!("chart-{k}"), ..document.sections[0].charts[0].clone() };
+        document.sections[0].charts.push(chart);
+    }
+    write_all_or_nothing(&document, &folder).unwrap();
+    let bytes: u64 = names(&folder).iter().map(|name| fs::metadata(folder.join(name)).unwrap().len()).sum();
+    assert!(bytes < 1_500_000, "{bytes}");
+}
