@@ -5,4 +5,5 @@ mod estimate;
 #[cfg(unix)]
 mod interrupt;
 mod refusals;
+mod render;
 mod report;
