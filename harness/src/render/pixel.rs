@@ -1,6 +1,7 @@
 //! The moments of one pixel.
 
 use fairflight_scene::Spectrum;
+use glam::DVec3;
 
 /// Mean and squared deviations of the estimates of a pixel, updated one by one (Welford's recurrence).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,20 @@ impl<C: Spectrum> Pixel<C> {
     /// The sample variance of the mean of the channels of one estimate; `None` for fewer than two.
     pub(super) fn variance_gray(&self) -> Option<f64> {
         (self.count > 1).then(|| self.squared_gray / (self.count - 1) as f64)
+    }
+}
+
+impl Pixel<DVec3> {
+    /// A pixel of three channels that were estimated independently of each other, by as many estimates.
+    pub(super) fn of_channels(channels: [Pixel<f64>; 3]) -> Self {
+        let squared = DVec3::from_array(channels.map(|channel| channel.squared));
+        Self {
+            count: channels[0].count,
+            mean: DVec3::from_array(channels.map(|channel| channel.mean)),
+            squared,
+            // The variance of a mean of three independent numbers.
+            squared_gray: squared.element_sum() / 9.0,
+        }
     }
 }
 

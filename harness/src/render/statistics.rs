@@ -85,6 +85,7 @@ pub(super) struct Moments {
     /// The mean over pixels of the variance of the mean of the channels of one sample.
     variance_gray: Option<f64>,
     cost: Spent,
+    warning: Option<String>,
 }
 
 impl<C: Spectrum> From<Drawn<C>> for Moments {
@@ -98,6 +99,7 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
             variance: sum(&mut pixels.iter().map(|pixel| pixel.variance().map(C::mean))),
             variance_gray: sum(&mut pixels.iter().map(super::pixel::Pixel::variance_gray)),
             cost: drawn.cost,
+            warning: drawn.warning,
         }
     }
 }
@@ -185,6 +187,11 @@ impl Moments {
             warnings,
             provenance,
         }
+    }
+
+    /// What is to be said of the walks.
+    pub(super) fn warning(&self) -> Option<String> {
+        self.warning.clone()
     }
 
     /// Walks that were cut.

@@ -168,6 +168,85 @@ fn a_white_medium_in_a_white_room_is_invisible() {
     assert_mean(&furnace(terminating, 1.0), 1.0);
 }
 
+/// Two ways to one mean; 5 standard errors of the difference.
+#[track_caller]
+fn assert_same_mean(one: &Value, other: &Value) {
+    let [(a, da), (b, db)] = [one, other].map(|scene| {
+        let statistics = statistics(scene, &["--samples-per-pixel", "64"]);
+        assert_eq!(statistics["warnings"], json!([]));
+        (number(&statistics["radiance"]["mean"]), number(&statistics["radiance"]["standard_error"]))
+    });
+    assert!((a - b).abs() <= 5.0 * da.hypot(db), "{a} +- {da}, {b} +- {db}");
+}
+
+#[test]
+fn walks_of_all_kinds_see_the_same_light() {
+    let sun = |scene: &mut Value| {
+        scene["lights"] = json!([{ "kind": "environment", "radiance": 0.5 },
+            { "kind": "directional", "direction": [0, -1, 1], "irradiance": 4 }]);
+    };
+    let tracer = with(sun);
+    let grid = with(|scene| {
+        sun(scene);
+        scene["integrator"]["sigma_samp"] = json!({ "cells": [12, 12, 12], "factor": 1.1, "floor": 0.1 });
+    });
+    assert_same_mean(&tracer, &grid);
+    for starts in ["equidistant", "independent"] {
+        let splitting = with(|scene| {
+            sun(scene);
+            scene["integrator"]["kind"] = json!("line_splitting");
+            scene["integrator"]["majorant"] = json!(1.5);
+            scene["integrator"]["splits"] = json!(4);
+            scene["integrator"]["starts"] = json!(starts);
+        });
+        assert_same_mean(&tracer, &splitting);
+    }
+    let coloured = |colour: &str| {
+        with(|scene| {
+            scene["medium"]["albedo"] = json!([0.9, 0.5, 0.2]);
+            scene["lights"][0]["radiance"] = json!([1, 2, 3]);
+            scene["integrator"]["colour"] = json!(colour);
+        })
+    };
+    assert_same_mean(&coloured("shared"), &coloured("separate"));
+}
+
+#[test]
+fn single_scattering_of_all_kinds_sees_the_same_light() {
+    let scene = |sampling: &str, estimator: Value| {
+        with(|scene| {
+            scene["lights"] = json!([{ "kind": "point", "position": [4, 11, 6], "power": 1000 },
+                { "kind": "environment", "radiance": 0.1 }]);
+            scene["integrator"] = json!({ "kind": "single_scattering", "sampling": sampling, "samples_per_ray": 3,
+                "estimator": estimator, "shadow": { "kind": "regular" } });
+        })
+    };
+    let regular = scene("source", json!({ "kind": "regular" }));
+    let walk = json!({ "kind": "double_particle", "sigma_samp": 0.8 });
+    let explored = json!({ "kind": "double_particle", "sigma_samp": 0.4, "control": { "kind": "explorers", "count": 12 } });
+    for sampling in [
+        "attenuation",
+        "attenuation_resampled",
+        "source",
+        "scattering",
+        "source_and_scattering",
+        "attenuation_and_source",
+        "attenuation_and_scattering",
+    ] {
+        assert_same_mean(&regular, &scene(sampling, walk.clone()));
+        assert_same_mean(&regular, &scene(sampling, explored.clone()));
+    }
+    assert_same_mean(
+        &regular,
+        &scene("attenuation", json!({ "kind": "line_integral", "majorant": 1.5, "splits": 4 })),
+    );
+    let marching = json!({ "kind": "ray_marching", "steps": 64, "jitter": true });
+    let mut marching = scene("attenuation", marching);
+    marching["integrator"].as_object_mut().unwrap().remove("shadow");
+    let statistics = statistics(&marching, &[]);
+    assert!(statistics["warnings"][0].as_str().unwrap().contains("biased baseline"));
+}
+
 #[test]
 fn a_camera_inside_and_a_light_outside() {
     let inside = with(|scene| {
@@ -340,6 +419,22 @@ fn integrators_that_are_refused() {
             s["integrator"]["sigma_samp"] = json!(0.1);
         },
         &["integrator.version", "terminating needs"],
+    );
+    change_refused(
+        |s| s["integrator"]["sigma_samp"] = json!(0.03),
+        &["integrator.sigma_samp", "no second moment", "allow_supercritical"],
+    );
+    change_refused(
+        |s| s["integrator"]["sigma_samp"] = json!({ "cells": [0, 1, 1], "factor": 1, "floor": 1 }),
+        &["integrator.sigma_samp.cells.0", "from 1"],
+    );
+    change_refused(
+        |s| {
+            s["integrator"]["kind"] = json!("line_splitting");
+            s["integrator"]["majorant"] = json!(0.01);
+            s["integrator"]["splits"] = json!(2);
+        },
+        &["integrator.majorant", "0.01 is none"],
     );
     change_refused(
         |s| s["integrator"] = estimator(json!({ "kind": "woodcock", "majorant": 0.01 })),

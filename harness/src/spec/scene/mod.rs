@@ -10,6 +10,7 @@ mod volume;
 pub use colour::ColourSpec;
 pub use integrator::{
     Collisions, IntegratorSpec, Particles, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec,
+    WalkSpec,
 };
 pub use light::LightSpec;
 pub use ray_estimator::RayEstimatorSpec;
