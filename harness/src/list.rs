@@ -29,8 +29,8 @@ controls       none
                piecewise_linear  positions, sigma_main
                explorers         count
 integrators    transmittance     estimator
-               particle_tracer   version, sigma_samp, [max_collisions], [colour], [allow_supercritical]
-                                                            szirmay-kalos-2017 4.1
+               particle_tracer   version, sigma_samp, [particles], [colour], [max_collisions],
+                                 [allow_supercritical]      szirmay-kalos-2017 4.1
                line_splitting    majorant, splits, [starts], and those of particle_tracer
                                                             raab-2008 3.1
                single_scattering sampling, estimator, samples_per_ray, [heuristic], [shadow], [shared_explorers]

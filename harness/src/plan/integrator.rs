@@ -5,7 +5,7 @@ use super::{AnyMedium, RayEstimator, SpaceSampling, Unlawful, WalkPlan};
 use crate::Failure;
 use crate::spec::{EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SingleScatteringSpec};
 use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
-use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer};
+use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Lights, Spectrum, Volume};
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
 use std::cell::Cell;
@@ -19,6 +19,8 @@ pub enum IntegratorPlan {
     RegularTransmittance,
     /// Importons.
     ParticleTracer(WalkPlan),
+    /// Photons, which are not drawn pixel by pixel; here is the background, attenuated by ratio tracking at the same rate.
+    PhotonTracer(WalkPlan),
     /// raab-2008 section 3.1.
     LineSplitting {
         /// How each flight goes on.
@@ -80,10 +82,11 @@ impl IntegratorPlan {
                 RayEstimator::build(estimator, "integrator.estimator").map(Self::Transmittance)
             }
             IntegratorSpec::ParticleTracer(tracer) => {
-                if tracer.particles == Particles::Photons {
-                    return Err(Failure::refused("integrator.particles: photons come with a later version"));
-                }
-                WalkPlan::build(&tracer.walk, medium, bounds).map(Self::ParticleTracer)
+                let walk = WalkPlan::build(&tracer.walk, medium, bounds)?;
+                Ok(match tracer.particles {
+                    Particles::Importons => Self::ParticleTracer(walk),
+                    Particles::Photons => Self::PhotonTracer(walk),
+                })
             }
             IntegratorSpec::LineSplitting { walk, majorant, splits, starts } => Ok(Self::LineSplitting {
                 walk: WalkPlan::build(walk, medium, bounds)?,
@@ -102,7 +105,9 @@ impl IntegratorPlan {
     #[must_use]
     pub fn walk(&self) -> Option<&WalkPlan> {
         match self {
-            Self::ParticleTracer(walk) | Self::LineSplitting { walk, .. } => Some(walk),
+            Self::ParticleTracer(walk) | Self::PhotonTracer(walk) | Self::LineSplitting { walk, .. } => {
+                Some(walk)
+            }
             Self::Transmittance(_) | Self::RegularTransmittance | Self::SingleScattering(_) => None,
         }
     }
@@ -130,6 +135,9 @@ impl IntegratorPlan {
                 Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
             }
             Self::ParticleTracer(walk) => Ok(job.run(ParticleTracer::new(volume, lights, walk.walk()))),
+            Self::PhotonTracer(walk) => {
+                Ok(job.run(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling()))))
+            }
             Self::LineSplitting { walk, line, starts, majorant } => {
                 let asked = (*line, *starts, *majorant);
                 Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
@@ -159,9 +167,10 @@ impl IntegratorPlan {
         match self {
             Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, lights, Regular))),
             Self::SingleScattering(plan) => plan.by_closed_form(volume, lights, unlawful, job),
-            Self::Transmittance(_) | Self::ParticleTracer(_) | Self::LineSplitting { .. } => {
-                self.by_look_ups(volume, lights, unlawful, job)
-            }
+            Self::Transmittance(_)
+            | Self::ParticleTracer(_)
+            | Self::PhotonTracer(_)
+            | Self::LineSplitting { .. } => self.by_look_ups(volume, lights, unlawful, job),
         }
     }
 
@@ -171,7 +180,7 @@ impl IntegratorPlan {
     /// If they are not.
     pub fn admits(&self, (lowest, highest): (f64, f64), albedo: f64) -> Result<(), Failure> {
         match self {
-            Self::ParticleTracer(walk) => walk.admits((lowest, highest), albedo),
+            Self::ParticleTracer(walk) | Self::PhotonTracer(walk) => walk.admits((lowest, highest), albedo),
             Self::LineSplitting { walk, majorant, .. } => {
                 admits_majorant("integrator.majorant", *majorant, (lowest, highest))?;
                 walk.admits((lowest, highest), albedo)

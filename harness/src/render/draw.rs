@@ -2,7 +2,7 @@
 
 use super::pixel::Pixel;
 use crate::Failure;
-use crate::plan::{IntegratorJob, MediumJob, Radiant, ScenePlan, TileIntegrator, Unlawful};
+use crate::plan::{IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, TileIntegrator, Unlawful};
 use cpu_time::ThreadTime;
 use fairflight_media::{LineThickness, Medium, Observed};
 use fairflight_scene::{Spectrum, Volume};
@@ -21,6 +21,8 @@ pub(super) struct Drawn<C> {
     /// Row by row from the top.
     pub pixels: Vec<Pixel<C>>,
     pub cost: Spent,
+    /// The variance of the image's mean that pixels share, 0 where they share nothing; `None` if it is not known.
+    pub shared_variance: Option<f64>,
     /// What is to be said of the walks.
     pub warning: Option<String>,
 }
@@ -32,6 +34,11 @@ impl Drawn<DVec3> {
         Self {
             pixels: pixels.map(|((r, g), b)| Pixel::of_channels([*r, *g, *b])).collect(),
             cost: red.cost.and(green.cost).and(blue.cost),
+            // Of the mean of three independent channels.
+            shared_variance: [red.shared_variance, green.shared_variance, blue.shared_variance]
+                .into_iter()
+                .sum::<Option<f64>>()
+                .map(|sum| sum / 9.0),
             warning: red.warning.or(green.warning).or(blue.warning),
         }
     }
@@ -49,7 +56,7 @@ pub(super) struct Spent {
 }
 
 impl Spent {
-    fn and(self, other: Self) -> Self {
+    pub(super) fn and(self, other: Self) -> Self {
         Self {
             lookups: self.lookups + other.lookups,
             cpu_seconds: self.cpu_seconds + other.cpu_seconds,
@@ -78,11 +85,11 @@ pub(super) fn draw<C: Spectrum>(
     plan.medium.with(Draw { plan, radiant, seed, advance })
 }
 
-struct Draw<'a, C> {
-    plan: &'a ScenePlan,
-    radiant: &'a Radiant<C>,
-    seed: u64,
-    advance: &'a (dyn Fn(u64) + Sync),
+pub(super) struct Draw<'a, C> {
+    pub plan: &'a ScenePlan,
+    pub radiant: &'a Radiant<C>,
+    pub seed: u64,
+    pub advance: &'a (dyn Fn(u64) + Sync),
 }
 
 impl<C: Spectrum> MediumJob for Draw<'_, C> {
@@ -93,24 +100,26 @@ impl<C: Spectrum> MediumJob for Draw<'_, C> {
         // Whether they fit together is known before the first tile.
         integrator.by_look_ups(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
         let warning = self.check_growth(medium)?;
-        self.tiles(warning, |tile| {
+        let drawn = self.tiles(warning, |tile| {
             self.tile(medium, |volume, unlawful| {
                 let job = DrawTile { plan: self.plan, seed: self.seed, tile };
                 integrator.by_look_ups(volume, &self.radiant.lights, unlawful, job)
             })
-        })
+        })?;
+        self.finish(medium, drawn)
     }
 
     fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
         let integrator = &self.plan.integrator;
         integrator.by_closed_form(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
         let warning = self.check_growth(medium)?;
-        self.tiles(warning, |tile| {
+        let drawn = self.tiles(warning, |tile| {
             self.tile(medium, |volume, unlawful| {
                 let job = DrawTile { plan: self.plan, seed: self.seed, tile };
                 integrator.by_closed_form(volume, &self.radiant.lights, unlawful, job)
             })
-        })
+        })?;
+        self.finish(medium, drawn)
     }
 }
 
@@ -125,10 +134,10 @@ impl<C> IntegratorJob<C> for Fits {
 /// The pixels of a tile, and how many walks were cut.
 type TilePixels<C> = Result<(Vec<Pixel<C>>, u64), Failure>;
 /// The volume of a tile, observed.
-type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a crate::plan::AnyPhase, C>;
+pub(super) type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a crate::plan::AnyPhase, C>;
 
 impl<C: Spectrum> Draw<'_, C> {
-    fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
+    pub(super) fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
         Volume {
             medium: Observed::new(medium),
             bounds: self.plan.bounds,
@@ -147,8 +156,16 @@ impl<C: Spectrum> Draw<'_, C> {
         growth
     }
 
+    /// What is not drawn pixel by pixel.
+    fn finish<M: Medium + Sync>(&self, medium: &M, drawn: Drawn<C>) -> Result<Drawn<C>, Failure> {
+        match &self.plan.integrator {
+            IntegratorPlan::PhotonTracer(walk) => self.add_photons(medium, walk, drawn),
+            _ => Ok(drawn),
+        }
+    }
+
     /// Whether all look-ups so far were lawful.
-    fn judge<M: Medium>(&self, observed: &Observed<M>) -> Result<(), Failure> {
+    pub(super) fn judge<M: Medium>(&self, observed: &Observed<M>) -> Result<(), Failure> {
         if !observed.is_finite() {
             return Err(Failure::refused("medium: sigma_t is not finite somewhere"));
         }
@@ -224,7 +241,7 @@ impl<C: Spectrum> Draw<'_, C> {
             }
             cost = cost.and(spent);
         }
-        Ok(Drawn { pixels, cost, warning })
+        Ok(Drawn { pixels, cost, shared_variance: Some(0.0), warning })
     }
 }
 

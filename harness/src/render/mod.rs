@@ -2,13 +2,14 @@
 
 mod draw;
 mod output;
+mod photons;
 mod pixel;
 mod statistics;
 
 use crate::cli::RenderArguments;
 use crate::estimate::{named, read};
 use crate::image::{Exposure, Format, Image};
-use crate::plan::{MediumLibrary, ScenePlan, Spectra};
+use crate::plan::{IntegratorPlan, MediumLibrary, ScenePlan, Spectra};
 use crate::spec::{LightSpec, SceneOverrides, SceneSpec};
 use crate::{DONE, Environment, Failure};
 use draw::{Drawn, draw};
@@ -80,7 +81,9 @@ fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Im
 fn measure(plan: &ScenePlan, environment: &Environment) -> Result<(Moments, f64), Failure> {
     let [width, height] = plan.camera.resolution().map(u64::from);
     let images = if matches!(plan.spectra, Spectra::Separate(_)) { 3 } else { 1 };
-    let samples = width * height * u64::from(plan.samples_per_pixel) * images;
+    // Photons come on top of the background behind the medium.
+    let passes = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
+    let samples = width * height * u64::from(plan.samples_per_pixel) * images * passes;
     let bar = environment.progress(samples, "rendering");
     let advance = |samples: u64| bar.inc(samples);
     let clock = Instant::now();
@@ -117,7 +120,16 @@ fn warnings(spec: &SceneSpec, plan: &ScenePlan, moments: &Moments) -> Vec<String
     }
     warnings.extend(spec.integrator.biased_baseline().map(|what| format!("integrator: {what}")));
     let inside = |light: &LightSpec| matches!(light, LightSpec::Point { position, .. } if plan.bounds.contains(*position));
-    if spec.integrator.walk().is_some() && spec.medium.is_some() && spec.lights.iter().any(inside) {
+    let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
+    if photons && spec.medium.is_some() && plan.bounds.contains(plan.camera.origin()) {
+        warnings.push(
+            "the camera stands in the medium: the connection of photons with it has no second moment, errors are \
+             underrated"
+                .to_owned(),
+        );
+    }
+    if spec.integrator.walk().is_some() && !photons && spec.medium.is_some() && spec.lights.iter().any(inside)
+    {
         warnings.push(
             "a point light lies in the medium: the connection with it has no second moment, errors are underrated"
                 .to_owned(),

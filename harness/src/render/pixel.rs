@@ -29,6 +29,13 @@ impl<C: Spectrum> Pixel<C> {
         self.squared_gray += before.mean() * after.mean();
     }
 
+    /// Adds an independent estimate of another part of the radiance, of which one sample has this variance. It does not enter
+    /// [`mean_variance_gray`](Self::mean_variance_gray): what pixels share is not for one pixel to tell.
+    pub(super) fn add_independent(&mut self, mean: C, variance: C) {
+        self.mean += mean;
+        self.squared += variance * (self.count.max(1) - 1) as f64;
+    }
+
     /// The mean of the estimates.
     pub(super) fn mean(&self) -> C {
         self.mean
@@ -39,9 +46,9 @@ impl<C: Spectrum> Pixel<C> {
         (self.count > 1).then(|| self.squared * (1.0 / (self.count - 1) as f64))
     }
 
-    /// The sample variance of the mean of the channels of one estimate; `None` for fewer than two.
-    pub(super) fn variance_gray(&self) -> Option<f64> {
-        (self.count > 1).then(|| self.squared_gray / (self.count - 1) as f64)
+    /// The variance of the mean of the channels of all estimates; `None` for fewer than two.
+    pub(super) fn mean_variance_gray(&self) -> Option<f64> {
+        (self.count > 1).then(|| self.squared_gray / ((self.count - 1) * self.count) as f64)
     }
 }
 
@@ -74,6 +81,6 @@ mod tests {
         assert_eq!(pixel.mean(), dvec3(3.0, 2.0, 0.0));
         assert!((pixel.variance().unwrap() - dvec3(4.0, 0.0, 1.0)).length() < 1e-15);
         // Of 1, 2, 2.
-        assert!((pixel.variance_gray().unwrap() - 1.0 / 3.0).abs() < 1e-15);
+        assert!((pixel.mean_variance_gray().unwrap() - 1.0 / 9.0).abs() < 1e-15);
     }
 }

@@ -61,7 +61,11 @@ fn the_same_bits_on_any_number_of_threads() {
     });
     let mut coloured: Value = serde_json::from_str(include_str!("../../scenes/coloured.json")).unwrap();
     coloured["camera"]["resolution"] = json!([33, 17]);
-    for scene in [scene(), shared, coloured] {
+    let mut photons = coloured.clone();
+    photons["integrator"]["particles"] = json!("photons");
+    let mut separate = photons.clone();
+    separate["integrator"]["colour"] = json!("separate");
+    for scene in [scene(), shared, coloured, photons, separate] {
         let folder = tempfile::tempdir().unwrap();
         let draw = |threads: &str| {
             let more = ["--threads", threads, "--samples-per-pixel", "3"];
@@ -201,6 +205,12 @@ fn walks_of_all_kinds_see_the_same_light() {
         });
         assert_same_mean(&tracer, &splitting);
     }
+    // The error of photons comes from 16 replicas: 5 of it are exceeded once in 6000 times.
+    let photons = with(|scene| {
+        sun(scene);
+        scene["integrator"]["particles"] = json!("photons");
+    });
+    assert_same_mean(&tracer, &photons);
     let coloured = |colour: &str| {
         with(|scene| {
             scene["medium"]["albedo"] = json!([0.9, 0.5, 0.2]);
@@ -264,6 +274,11 @@ fn a_camera_inside_and_a_light_outside() {
         scene["lights"] = json!([{ "kind": "point", "position": [0, 0, 10], "power": 1000 }]);
     });
     assert!(statistics(&within, &[])["warnings"][0].as_str().unwrap().contains("no second moment"));
+    let photons = with(|scene| {
+        scene["camera"]["origin"] = json!([0, 0, 8]);
+        scene["integrator"]["particles"] = json!("photons");
+    });
+    assert!(statistics(&photons, &[])["warnings"][0].as_str().unwrap().contains("the camera stands in"));
 }
 
 #[test]
