@@ -83,6 +83,6 @@ impl SceneSpec {
     #[must_use]
     pub fn is_gray(&self) -> bool {
         self.medium.iter().all(|medium| medium.albedo.is_gray())
-            && self.lights.iter().filter_map(LightSpec::strength).all(|strength| strength.is_gray())
+            && self.lights.iter().filter_map(LightSpec::strength).all(ColourSpec::is_gray)
     }
 }
