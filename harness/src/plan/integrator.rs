@@ -1,17 +1,13 @@
 //! An integrator of any kind, instantiated over the medium that it meets.
 
 use super::single_scattering::SingleScatteringPlan;
-use super::{RayEstimator, Unlawful};
+use super::{AnyMedium, RayEstimator, SpaceSampling, Unlawful, WalkPlan};
 use crate::Failure;
-use crate::spec::{
-    Collisions, EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SamplingFieldSpec,
-    SingleScatteringSpec, TracerSpec,
-};
-use fairflight_collision::{Albedo, CollisionModel, SingleParticle};
-use fairflight_media::{LineThickness, Medium, PhaseFunction};
-use fairflight_paths::{Attenuation, ExpectedValue, Integrator, ParticleTracer, Uniform, Walk};
+use crate::spec::{EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SingleScatteringSpec};
+use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
+use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Lights, Spectrum, Volume};
-use fairflight_transmittance::Regular;
+use fairflight_transmittance::{LineIntegral, Regular, Starts};
 use std::cell::Cell;
 
 /// An integrator whose parameters are checked.
@@ -22,16 +18,20 @@ pub enum IntegratorPlan {
     /// The same in closed form.
     RegularTransmittance,
     /// Importons.
-    ParticleTracer {
-        /// How they walk.
-        walk: Walk<Uniform>,
-        /// σ_samp.
-        sigma_samp: f64,
-        /// More are cut.
-        max_collisions: u64,
+    ParticleTracer(WalkPlan),
+    /// Photons, which are not drawn pixel by pixel; here is the background, attenuated by ratio tracking at the same rate.
+    PhotonTracer(WalkPlan),
+    /// raab-2008 section 3.1.
+    LineSplitting {
+        /// How each flight goes on.
+        walk: WalkPlan,
+        /// The flights.
+        line: LineIntegral,
+        /// Of their first steps.
+        starts: Starts,
+        /// The claimed majorant.
+        majorant: f64,
     },
-    /// Expectations in place of decisions.
-    ExpectedValue,
     /// One scattering event per light.
     SingleScattering(SingleScatteringPlan),
 }
@@ -44,13 +44,21 @@ pub trait TileIntegrator<C>: Integrator<C> {
     }
 }
 
-impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C> for ParticleTracer<'_, M, P, C, Uniform> {
+impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C>
+    for ParticleTracer<'_, M, P, C, SpaceSampling<'_>>
+{
+    fn truncated(&self) -> u64 {
+        Self::truncated(self)
+    }
+}
+impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C>
+    for LineSplitting<'_, M, P, C, SpaceSampling<'_>>
+{
     fn truncated(&self) -> u64 {
         Self::truncated(self)
     }
 }
 impl<M, P, C, T> TileIntegrator<C> for Attenuation<'_, M, P, C, T> where Self: Integrator<C> {}
-impl<M, P, C> TileIntegrator<C> for ExpectedValue<'_, M, P, C> where Self: Integrator<C> {}
 
 /// Something to be done with an integrator.
 pub trait IntegratorJob<C> {
@@ -61,11 +69,11 @@ pub trait IntegratorJob<C> {
 }
 
 impl IntegratorPlan {
-    /// The integrator of a spec.
+    /// The integrator of a spec in a medium.
     ///
     /// # Errors
     /// If a parameter is not lawful.
-    pub fn build(spec: &IntegratorSpec) -> Result<Self, Failure> {
+    pub fn build(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
         match spec {
             IntegratorSpec::Transmittance { estimator: RayEstimatorSpec::Regular } => {
                 Ok(Self::RegularTransmittance)
@@ -73,29 +81,35 @@ impl IntegratorPlan {
             IntegratorSpec::Transmittance { estimator: RayEstimatorSpec::Sampled(estimator) } => {
                 RayEstimator::build(estimator, "integrator.estimator").map(Self::Transmittance)
             }
-            IntegratorSpec::ParticleTracer(tracer) => Self::tracer(tracer),
-            IntegratorSpec::ExpectedValue => Ok(Self::ExpectedValue),
+            IntegratorSpec::ParticleTracer(tracer) => {
+                let walk = WalkPlan::build(&tracer.walk, medium, bounds)?;
+                Ok(match tracer.particles {
+                    Particles::Importons => Self::ParticleTracer(walk),
+                    Particles::Photons => Self::PhotonTracer(walk),
+                })
+            }
+            IntegratorSpec::LineSplitting { walk, majorant, splits, starts } => Ok(Self::LineSplitting {
+                walk: WalkPlan::build(walk, medium, bounds)?,
+                line: LineIntegral::new(*splits)
+                    .map_err(|error| Failure::refused(format!("integrator.splits: {error}")))?,
+                starts: *starts,
+                majorant: *majorant,
+            }),
             IntegratorSpec::SingleScattering(spec) => {
                 SingleScatteringPlan::build(spec).map(Self::SingleScattering)
             }
         }
     }
 
-    fn tracer(spec: &TracerSpec) -> Result<Self, Failure> {
-        let TracerSpec { version, sampling, colour, particles, max_collisions, .. } = *spec;
-        if particles == Particles::Photons {
-            return Err(not_yet("particles", "photons"));
+    /// The walks of an integrator that has some.
+    #[must_use]
+    pub fn walk(&self) -> Option<&WalkPlan> {
+        match self {
+            Self::ParticleTracer(walk) | Self::PhotonTracer(walk) | Self::LineSplitting { walk, .. } => {
+                Some(walk)
+            }
+            Self::Transmittance(_) | Self::RegularTransmittance | Self::SingleScattering(_) => None,
         }
-        if colour == Collisions::Separate {
-            return Err(not_yet("colour", "separate"));
-        }
-        let SamplingFieldSpec::Uniform(sigma_samp) = sampling else {
-            return Err(not_yet("sigma_samp", "a grid"));
-        };
-        let refuse = |error| Failure::refused(format!("integrator.sigma_samp: {error}"));
-        let uniform = Uniform::new(sigma_samp).map_err(refuse)?;
-        let walk = Walk::new(version, uniform).with_max_collisions(max_collisions);
-        Ok(Self::ParticleTracer { walk, sigma_samp, max_collisions })
     }
 
     /// Does a job with the integrator inside, on a medium of which only look-ups are to be had. The first look-up that an
@@ -120,10 +134,16 @@ impl IntegratorPlan {
             Self::Transmittance(estimator) => {
                 Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
             }
-            Self::ParticleTracer { walk, .. } => Ok(job.run(ParticleTracer::new(volume, lights, *walk))),
+            Self::ParticleTracer(walk) => Ok(job.run(ParticleTracer::new(volume, lights, walk.walk()))),
+            Self::PhotonTracer(walk) => {
+                Ok(job.run(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling()))))
+            }
+            Self::LineSplitting { walk, line, starts, majorant } => {
+                let asked = (*line, *starts, *majorant);
+                Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
+            }
             Self::SingleScattering(plan) => plan.by_look_ups(volume, lights, unlawful, job),
             Self::RegularTransmittance => Err(needs_closed_form("estimator.kind: regular")),
-            Self::ExpectedValue => Err(needs_closed_form("kind: expected_value")),
         }
     }
 
@@ -146,36 +166,27 @@ impl IntegratorPlan {
     {
         match self {
             Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, lights, Regular))),
-            Self::ExpectedValue => Ok(job.run(ExpectedValue::new(volume, lights))),
             Self::SingleScattering(plan) => plan.by_closed_form(volume, lights, unlawful, job),
-            Self::Transmittance(_) | Self::ParticleTracer { .. } => {
-                self.by_look_ups(volume, lights, unlawful, job)
-            }
+            Self::Transmittance(_)
+            | Self::ParticleTracer(_)
+            | Self::PhotonTracer(_)
+            | Self::LineSplitting { .. } => self.by_look_ups(volume, lights, unlawful, job),
         }
     }
 
-    /// Whether walks are defined where σ_t has this value; the estimators of transmittance watch their own look-ups.
+    /// Whether walks are defined where σ_t lies in this range; the estimators of transmittance watch their own look-ups.
     ///
     /// # Errors
     /// If they are not.
-    pub fn admits(&self, sigma_t: f64, albedo: f64) -> Result<(), Failure> {
+    pub fn admits(&self, (lowest, highest): (f64, f64), albedo: f64) -> Result<(), Failure> {
         match self {
-            Self::ParticleTracer { walk, sigma_samp, .. } => {
-                let albedo = Albedo::new(albedo.min(1.0)).map_err(Failure::refused)?;
-                let r = sigma_t / sigma_samp;
-                if (SingleParticle { version: walk.version(), albedo }).admits(r) {
-                    return Ok(());
-                }
-                Err(Failure::refused(format!(
-                    "integrator.version: terminating needs 0 <= r <= 2/(1 + albedo), but r = sigma_t/sigma_samp = {r} \
-                     where sigma_t = {sigma_t}"
-                )))
+            Self::ParticleTracer(walk) | Self::PhotonTracer(walk) => walk.admits((lowest, highest), albedo),
+            Self::LineSplitting { walk, majorant, .. } => {
+                admits_majorant("integrator.majorant", *majorant, (lowest, highest))?;
+                walk.admits((lowest, highest), albedo)
             }
-            Self::ExpectedValue if sigma_t < 0.0 => Err(Failure::refused(format!(
-                "integrator.kind: expected_value needs sigma_t of at least 0, but sigma_t = {sigma_t} was met"
-            ))),
-            Self::SingleScattering(plan) => plan.admits(sigma_t),
-            _ => Ok(()),
+            Self::SingleScattering(plan) => plan.admits((lowest, highest)),
+            Self::Transmittance(_) | Self::RegularTransmittance => Ok(()),
         }
     }
 
@@ -203,7 +214,7 @@ impl IntegratorSpec {
             Self::SingleScattering(SingleScatteringSpec { estimator, shadow, .. }) => {
                 is_biased(estimator) || shadow.as_ref().is_some_and(is_biased)
             }
-            Self::ParticleTracer(_) | Self::ExpectedValue => false,
+            Self::ParticleTracer(_) | Self::LineSplitting { .. } => false,
         };
         biased.then_some("ray_marching is a biased baseline")
     }
@@ -215,6 +226,19 @@ pub(super) fn needs_closed_form(what: &str) -> Failure {
     ))
 }
 
-fn not_yet(key: &str, what: &str) -> Failure {
-    Failure::refused(format!("integrator.{key}: {what} comes with a later version"))
+/// Whether a claimed majorant is one.
+pub(super) fn admits_majorant(
+    key: &str,
+    majorant: f64,
+    (lowest, highest): (f64, f64),
+) -> Result<(), Failure> {
+    if lowest < 0.0 {
+        return Err(Failure::refused(format!("{key}: needs sigma_t of at least 0, but {lowest} was met")));
+    }
+    if highest > majorant {
+        return Err(Failure::refused(format!(
+            "{key}: {majorant} is none, since sigma_t = {highest} was met"
+        )));
+    }
+    Ok(())
 }

@@ -16,6 +16,7 @@ mod sampling;
 mod scene;
 mod single_scattering;
 mod voxel_lattice;
+mod walk;
 
 pub use control::AnyControl;
 pub use estimator::{AnyEstimator, Estimator, EstimatorJob, Lawful};
@@ -29,6 +30,7 @@ pub use sampling::AnySampling;
 pub use scene::{Radiant, ScenePlan, Spectra};
 pub use single_scattering::SingleScatteringPlan;
 pub use voxel_lattice::VoxelLattice;
+pub use walk::{SpaceSampling, WalkPlan};
 
 use crate::Failure;
 use crate::measure::MOST_COUNTED;

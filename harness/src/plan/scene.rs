@@ -3,7 +3,7 @@
 use super::{AnyMedium, AnyPhase, IntegratorPlan, MediumLibrary};
 use crate::Failure;
 use crate::image::Image;
-use crate::spec::{LightSpec, SceneSpec};
+use crate::spec::{Collisions, LightSpec, SceneSpec};
 use fairflight_media::{Bounds, Homogeneous};
 use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, SceneError, Source, Spectrum};
 use glam::DVec3;
@@ -37,6 +37,8 @@ pub enum Spectra {
     Gray(Radiant<f64>),
     /// Red, green and blue.
     Colour(Radiant<DVec3>),
+    /// Red, green and blue, each by itself.
+    Separate(Box<[Radiant<f64>; 3]>),
 }
 
 /// What has a colour.
@@ -66,17 +68,23 @@ impl ScenePlan {
             })?;
         let maps = read_maps(&spec.lights)?;
         let gray = spec.is_gray() && maps.iter().flatten().all(is_gray);
+        let separate = spec.integrator.walk().is_some_and(|walk| walk.colour == Collisions::Separate);
+        let channel = |k: usize| Radiant::build(spec, &maps, move |rgb: [f64; 3]| rgb[k]);
+        let spectra = if gray {
+            Spectra::Gray(channel(0)?)
+        } else if separate {
+            Spectra::Separate(Box::new([channel(0)?, channel(1)?, channel(2)?]))
+        } else {
+            Spectra::Colour(Radiant::build(spec, &maps, DVec3::from_array)?)
+        };
+        let integrator = IntegratorPlan::build(&spec.integrator, &medium, &bounds)?;
         Ok(Self {
             camera: spec.camera,
             medium,
             bounds,
             phase,
-            spectra: if gray {
-                Spectra::Gray(Radiant::build(spec, &maps)?)
-            } else {
-                Spectra::Colour(Radiant::build(spec, &maps)?)
-            },
-            integrator: IntegratorPlan::build(&spec.integrator)?,
+            spectra,
+            integrator,
             samples_per_pixel: spec.samples_per_pixel,
             seed: spec.seed,
         })
@@ -106,17 +114,18 @@ fn is_gray(map: &Image) -> bool {
 }
 
 impl<C: Spectrum> Radiant<C> {
-    fn build(spec: &SceneSpec, maps: &[Option<Image>]) -> Result<Self, Failure> {
-        let albedo = spec.medium.as_ref().map_or(C::ZERO, |volume| C::from_rgb(volume.albedo.rgb()));
+    /// In the channels that `of` takes of red, green and blue.
+    fn build(spec: &SceneSpec, maps: &[Option<Image>], of: impl Fn([f64; 3]) -> C) -> Result<Self, Failure> {
+        let albedo = spec.medium.as_ref().map_or(C::ZERO, |volume| of(volume.albedo.rgb()));
         let mut lights = Lights { background: Background::dark(), sources: Vec::new() };
         for (i, (light, map)) in spec.lights.iter().zip(maps).enumerate() {
             let refuse = |error: SceneError| Failure::refused(format!("lights.{i}: {error}"));
             match (light, map) {
                 (LightSpec::Environment { radiance }, _) => {
-                    lights.background.constant += C::from_rgb(radiance.rgb());
+                    lights.background.constant += of(radiance.rgb());
                 }
                 (LightSpec::EnvironmentMap { file }, Some(map)) => {
-                    let pixels = map.pixels().iter().map(|pixel| C::from_rgb(pixel.map(f64::from)));
+                    let pixels = map.pixels().iter().map(|pixel| of(pixel.map(f64::from)));
                     let map = EnvironmentMap::new(map.width(), map.height(), pixels.collect());
                     let in_file = |error: SceneError| {
                         Failure::refused(format!("lights.{i}.file: {}: {error}", file.display()))
@@ -125,11 +134,11 @@ impl<C: Spectrum> Radiant<C> {
                 }
                 (LightSpec::EnvironmentMap { .. }, None) => {}
                 (LightSpec::Point { position, power }, _) => {
-                    let light = Source::point(*position, C::from_rgb(power.rgb()));
+                    let light = Source::point(*position, of(power.rgb()));
                     lights.sources.push(light.map_err(refuse)?);
                 }
                 (LightSpec::Directional { direction, irradiance }, _) => {
-                    let light = Source::directional(*direction, C::from_rgb(irradiance.rgb()));
+                    let light = Source::directional(*direction, of(irradiance.rgb()));
                     lights.sources.push(light.map_err(refuse)?);
                 }
             }

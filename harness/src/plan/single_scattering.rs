@@ -1,6 +1,6 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
-use super::integrator::needs_closed_form;
+use super::integrator::{admits_majorant, needs_closed_form};
 use super::{IntegratorJob, RayEstimator, RayWorker, TileIntegrator, Unlawful};
 use crate::Failure;
 use crate::spec::{
@@ -9,13 +9,13 @@ use crate::spec::{
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{LineThickness, Medium, PhaseFunction, Ray};
 use fairflight_paths::single_scattering::{
-    Heuristic, Marching, Primary, Sampling, SamplingError, SharedExplorers, SingleScattering, Technique,
-    Tracked,
+    Heuristic, LineSampled, Marching, Primary, Sampling, SamplingError, SharedExplorers, SingleScattering,
+    Technique, Tracked,
 };
 use fairflight_paths::{Integrator, RayTransmittance};
 use fairflight_scene::{Lights, Spectrum, Volume};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{Offset, RayMarching, Regular};
+use fairflight_transmittance::{LineIntegral, Offset, RayMarching, Regular, Starts};
 use std::cell::Cell;
 
 /// Single scattering whose parameters are checked.
@@ -37,6 +37,7 @@ enum PrimaryPlan {
     Regular,
     Double { sigma_samp: f64, control: bool },
     Single { model: SingleParticle, sigma_samp: f64, control: bool },
+    Line { majorant: f64, line: LineIntegral },
     Marching { steps: u32, offset: Offset, shadow: RayMarching },
 }
 
@@ -75,7 +76,14 @@ impl SingleScatteringPlan {
     }
 
     /// Whether the walk of the camera ray is defined where σ_t has this value.
-    pub(super) fn admits(&self, sigma_t: f64) -> Result<(), Failure> {
+    pub(super) fn admits(&self, range: (f64, f64)) -> Result<(), Failure> {
+        if let PrimaryPlan::Line { majorant, .. } = self.primary {
+            return admits_majorant("integrator.estimator.majorant", majorant, range);
+        }
+        [range.0, range.1].into_iter().try_for_each(|sigma_t| self.admits_value(sigma_t))
+    }
+
+    fn admits_value(&self, sigma_t: f64) -> Result<(), Failure> {
         match self.primary {
             // With a control only versions that are defined everywhere are accepted.
             PrimaryPlan::Single { model, sigma_samp, control: false }
@@ -161,6 +169,9 @@ impl SingleScatteringPlan {
                 let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
                 self.with(volume, lights, walk, shadow, job)
             }
+            PrimaryPlan::Line { majorant, line } => {
+                Ok(job.run(LineSampled::new(volume, lights, (line, Starts::Equidistant, majorant), shadow)))
+            }
             PrimaryPlan::Marching { steps, offset, shadow } => {
                 Ok(job.run(Marching::new(volume, lights, (steps, offset), shadow)))
             }
@@ -225,11 +236,7 @@ impl PrimaryPlan {
                 Ok(Self::Single { model, sigma_samp: rate(sampling)?, control })
             }
             EstimatorSpec::RayMarching { steps, offset } => {
-                if spec.sampling != Strategy::Attenuation {
-                    return Err(Failure::refused(
-                        "integrator.sampling: must be attenuation, since ray_marching scatters at its own steps",
-                    ));
-                }
+                own_points(spec.sampling, "ray_marching")?;
                 let marching = |steps, offset| {
                     RayMarching::new(steps, offset)
                         .map_err(|error| Failure::refused(format!("integrator.estimator.steps: {error}")))
@@ -247,12 +254,28 @@ impl PrimaryPlan {
                 };
                 Ok(Self::Marching { steps: *steps, offset: *offset, shadow })
             }
-            EstimatorSpec::Woodcock { .. } | EstimatorSpec::LineIntegral { .. } => Err(Failure::refused(
-                "integrator.estimator.kind: must be regular, double_particle, single_particle or ray_marching for \
-                 single_scattering, which asks for transmittance at every distance",
+            EstimatorSpec::LineIntegral { majorant, splits } => {
+                own_points(spec.sampling, "line_integral")?;
+                let line = LineIntegral::new(*splits)
+                    .map_err(|error| Failure::refused(format!("integrator.estimator.splits: {error}")))?;
+                Ok(Self::Line { majorant: *majorant, line })
+            }
+            EstimatorSpec::Woodcock { .. } => Err(Failure::refused(
+                "integrator.estimator.kind: must be regular, double_particle, single_particle, line_integral or \
+                 ray_marching for single_scattering, which asks for transmittance at every distance",
             )),
         }
     }
+}
+
+/// Some estimators scatter at points of their own.
+fn own_points(sampling: Strategy, name: &str) -> Result<(), Failure> {
+    if sampling == Strategy::Attenuation {
+        return Ok(());
+    }
+    Err(Failure::refused(format!(
+        "integrator.sampling: must be attenuation, since {name} scatters at points of its own"
+    )))
 }
 
 /// The explorers of an estimator's control, if it has one.
@@ -304,3 +327,4 @@ impl<M: LineThickness> RayTransmittance<M> for ShadowWorker<'_> {
 
 impl<M, P, C, W, T> TileIntegrator<C> for SingleScattering<'_, M, P, C, W, T> where Self: Integrator<C> {}
 impl<M, P, C> TileIntegrator<C> for Marching<'_, M, P, C> where Self: Integrator<C> {}
+impl<M, P, C, T> TileIntegrator<C> for LineSampled<'_, M, P, C, T> where Self: Integrator<C> {}

@@ -2,11 +2,12 @@
 
 use super::pixel::Pixel;
 use crate::Failure;
-use crate::plan::{IntegratorJob, MediumJob, Radiant, ScenePlan, TileIntegrator, Unlawful};
+use crate::plan::{IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, TileIntegrator, Unlawful};
 use cpu_time::ThreadTime;
 use fairflight_media::{LineThickness, Medium, Observed};
 use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::{Seeded, UniformSource};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,6 +21,27 @@ pub(super) struct Drawn<C> {
     /// Row by row from the top.
     pub pixels: Vec<Pixel<C>>,
     pub cost: Spent,
+    /// The variance of the image's mean that pixels share, 0 where they share nothing; `None` if it is not known.
+    pub shared_variance: Option<f64>,
+    /// What is to be said of the walks.
+    pub warning: Option<String>,
+}
+
+impl Drawn<DVec3> {
+    /// An image of three channels that were drawn one by one.
+    pub(super) fn of_channels([red, green, blue]: [Drawn<f64>; 3]) -> Self {
+        let pixels = red.pixels.iter().zip(&green.pixels).zip(&blue.pixels);
+        Self {
+            pixels: pixels.map(|((r, g), b)| Pixel::of_channels([*r, *g, *b])).collect(),
+            cost: red.cost.and(green.cost).and(blue.cost),
+            // Of the mean of three independent channels.
+            shared_variance: [red.shared_variance, green.shared_variance, blue.shared_variance]
+                .into_iter()
+                .sum::<Option<f64>>()
+                .map(|sum| sum / 9.0),
+            warning: red.warning.or(green.warning).or(blue.warning),
+        }
+    }
 }
 
 /// What drawing cost.
@@ -33,6 +55,16 @@ pub(super) struct Spent {
     pub truncated: u64,
 }
 
+impl Spent {
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            lookups: self.lookups + other.lookups,
+            cpu_seconds: self.cpu_seconds + other.cpu_seconds,
+            truncated: self.truncated + other.truncated,
+        }
+    }
+}
+
 /// A rectangle of pixels: from, to (not included).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Tile {
@@ -40,22 +72,24 @@ struct Tile {
     rows: [u32; 2],
 }
 
-/// Draws all pixels of a plan. `advance` is told how many samples were added.
+/// Draws all pixels of a plan with the variates of `seed`. `advance` is told how many samples were added.
 ///
 /// # Errors
 /// If a look-up is not lawful, or a sample not finite: that of the first tile where it happens.
 pub(super) fn draw<C: Spectrum>(
     plan: &ScenePlan,
     radiant: &Radiant<C>,
+    seed: u64,
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Drawn<C>, Failure> {
-    plan.medium.with(Draw { plan, radiant, advance })
+    plan.medium.with(Draw { plan, radiant, seed, advance })
 }
 
-struct Draw<'a, C> {
-    plan: &'a ScenePlan,
-    radiant: &'a Radiant<C>,
-    advance: &'a (dyn Fn(u64) + Sync),
+pub(super) struct Draw<'a, C> {
+    pub plan: &'a ScenePlan,
+    pub radiant: &'a Radiant<C>,
+    pub seed: u64,
+    pub advance: &'a (dyn Fn(u64) + Sync),
 }
 
 impl<C: Spectrum> MediumJob for Draw<'_, C> {
@@ -65,23 +99,27 @@ impl<C: Spectrum> MediumJob for Draw<'_, C> {
         let integrator = &self.plan.integrator;
         // Whether they fit together is known before the first tile.
         integrator.by_look_ups(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
-        self.tiles(|tile| {
+        let warning = self.check_growth(medium)?;
+        let drawn = self.tiles(warning, |tile| {
             self.tile(medium, |volume, unlawful| {
-                let job = DrawTile { plan: self.plan, tile };
+                let job = DrawTile { plan: self.plan, seed: self.seed, tile };
                 integrator.by_look_ups(volume, &self.radiant.lights, unlawful, job)
             })
-        })
+        })?;
+        self.finish(medium, drawn)
     }
 
     fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
         let integrator = &self.plan.integrator;
         integrator.by_closed_form(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
-        self.tiles(|tile| {
+        let warning = self.check_growth(medium)?;
+        let drawn = self.tiles(warning, |tile| {
             self.tile(medium, |volume, unlawful| {
-                let job = DrawTile { plan: self.plan, tile };
+                let job = DrawTile { plan: self.plan, seed: self.seed, tile };
                 integrator.by_closed_form(volume, &self.radiant.lights, unlawful, job)
             })
-        })
+        })?;
+        self.finish(medium, drawn)
     }
 }
 
@@ -96,16 +134,53 @@ impl<C> IntegratorJob<C> for Fits {
 /// The pixels of a tile, and how many walks were cut.
 type TilePixels<C> = Result<(Vec<Pixel<C>>, u64), Failure>;
 /// The volume of a tile, observed.
-type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a crate::plan::AnyPhase, C>;
+pub(super) type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a crate::plan::AnyPhase, C>;
 
 impl<C: Spectrum> Draw<'_, C> {
-    fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
+    pub(super) fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
         Volume {
             medium: Observed::new(medium),
             bounds: self.plan.bounds,
             albedo: self.radiant.albedo,
             phase: &self.plan.phase,
         }
+    }
+
+    /// Whether the walks of the integrator have a second moment. Its look-ups are not part of the cost: it is a diagnosis.
+    fn check_growth<M: Medium>(&self, medium: &M) -> Result<Option<String>, Failure> {
+        let Some(walk) = self.plan.integrator.walk() else { return Ok(None) };
+        let volume = self.volume(medium);
+        let growth = walk.check_growth(&volume, self.seed);
+        // Where walks are not defined they do not grow either.
+        self.judge(&volume.medium)?;
+        growth
+    }
+
+    /// What is not drawn pixel by pixel.
+    fn finish<M: Medium + Sync>(&self, medium: &M, drawn: Drawn<C>) -> Result<Drawn<C>, Failure> {
+        match &self.plan.integrator {
+            IntegratorPlan::PhotonTracer(walk) => self.add_photons(medium, walk, drawn),
+            _ => Ok(drawn),
+        }
+    }
+
+    /// Whether all look-ups so far were lawful.
+    pub(super) fn judge<M: Medium>(&self, observed: &Observed<M>) -> Result<(), Failure> {
+        if !observed.is_finite() {
+            return Err(Failure::refused("medium: sigma_t is not finite somewhere"));
+        }
+        let (lowest, highest) = observed.range();
+        if let Some(bound) = observed.upper_bound()
+            && highest > bound
+        {
+            return Err(Failure::refused(format!(
+                "medium: sigma_t = {highest} exceeds the declared majorant {bound}"
+            )));
+        }
+        if observed.lookups() > 0 {
+            self.plan.integrator.admits((lowest, highest), self.radiant.albedo.max_channel())?;
+        }
+        Ok(())
     }
 
     /// One tile on an observed medium; what was met is judged afterwards.
@@ -119,34 +194,20 @@ impl<C: Spectrum> Draw<'_, C> {
         let volume = self.volume(medium);
         let unlawful = Cell::new(None);
         let drawn = draw(&volume, &unlawful)?;
-        let observed = &volume.medium;
         // Before the samples: a look-up that is not finite explains a sample that is not.
-        if !observed.is_finite() {
-            return Err(Failure::refused("medium: sigma_t is not finite somewhere"));
-        }
-        let (lowest, highest) = observed.range();
-        if let Some(bound) = observed.upper_bound()
-            && highest > bound
-        {
-            return Err(Failure::refused(format!(
-                "medium: sigma_t = {highest} exceeds the declared majorant {bound}"
-            )));
-        }
+        self.judge(&volume.medium)?;
         if let Some(unlawful) = unlawful.get() {
             return Err(plan.integrator.explain(unlawful));
         }
-        if observed.lookups() > 0 {
-            let albedo = self.radiant.albedo.max_channel();
-            plan.integrator.admits(lowest, albedo).and_then(|()| plan.integrator.admits(highest, albedo))?;
-        }
         let (pixels, truncated) = drawn?;
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        Ok((pixels, Spent { lookups: observed.lookups(), cpu_seconds, truncated }))
+        Ok((pixels, Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated }))
     }
 
     /// All tiles, put together in the order of their pixels.
     fn tiles(
         &self,
+        warning: Option<String>,
         tile: impl Fn(Tile) -> Result<(Vec<Pixel<C>>, Spent), Failure> + Sync,
     ) -> Result<Drawn<C>, Failure> {
         let [columns, rows] = self.plan.camera.resolution();
@@ -178,11 +239,9 @@ impl<C: Spectrum> Draw<'_, C> {
                 let start = row as usize * columns as usize + area.columns[0] as usize;
                 pixels[start..start + width].copy_from_slice(line);
             }
-            cost.lookups += spent.lookups;
-            cost.cpu_seconds += spent.cpu_seconds;
-            cost.truncated += spent.truncated;
+            cost = cost.and(spent);
         }
-        Ok(Drawn { pixels, cost })
+        Ok(Drawn { pixels, cost, shared_variance: Some(0.0), warning })
     }
 }
 
@@ -207,6 +266,7 @@ impl Tile {
 
 struct DrawTile<'a> {
     plan: &'a ScenePlan,
+    seed: u64,
     tile: Tile,
 }
 
@@ -214,13 +274,13 @@ impl<C: Spectrum> IntegratorJob<C> for DrawTile<'_> {
     type Output = TilePixels<C>;
 
     fn run<I: TileIntegrator<C>>(self, mut integrator: I) -> Self::Output {
-        let Self { plan, tile } = self;
+        let Self { plan, seed, tile } = self;
         let [columns, _] = plan.camera.resolution();
         let mut pixels = Vec::with_capacity(tile.pixels() as usize);
         for row in tile.rows[0]..tile.rows[1] {
             for column in tile.columns[0]..tile.columns[1] {
                 let index = u64::from(row) * u64::from(columns) + u64::from(column);
-                let mut source = Seeded::for_batch(plan.seed, index);
+                let mut source = Seeded::for_batch(seed, index);
                 let mut pixel = Pixel::new();
                 for i in 0..plan.samples_per_pixel {
                     let within = [source.next_uniform(), source.next_uniform()];
@@ -228,8 +288,7 @@ impl<C: Spectrum> IntegratorJob<C> for DrawTile<'_> {
                     let radiance = integrator.radiance(&line, &mut source);
                     if !radiance.is_finite() {
                         return Err(Failure::refused(format!(
-                            "the radiance of pixel (column {column}, row {row}), sample {i}, seed {} is {:?}",
-                            plan.seed,
+                            "the radiance of pixel (column {column}, row {row}), sample {i}, seed {seed} is {:?}",
                             radiance.rgb()
                         )));
                     }

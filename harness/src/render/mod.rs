@@ -2,16 +2,18 @@
 
 mod draw;
 mod output;
+mod photons;
 mod pixel;
 mod statistics;
 
 use crate::cli::RenderArguments;
 use crate::estimate::{named, read};
 use crate::image::{Exposure, Format, Image};
-use crate::plan::{MediumLibrary, ScenePlan, Spectra};
-use crate::spec::{IntegratorSpec, LightSpec, SceneOverrides, SceneSpec};
+use crate::plan::{IntegratorPlan, MediumLibrary, ScenePlan, Spectra};
+use crate::spec::{LightSpec, SceneOverrides, SceneSpec};
 use crate::{DONE, Environment, Failure};
-use draw::draw;
+use draw::{Drawn, draw};
+use fairflight_sources::derive_seed;
 use output::{Kind, Prepared};
 use statistics::Moments;
 use std::io::{Read, Write};
@@ -78,12 +80,25 @@ fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Im
 /// Draws the image, and says how long that took.
 fn measure(plan: &ScenePlan, environment: &Environment) -> Result<(Moments, f64), Failure> {
     let [width, height] = plan.camera.resolution().map(u64::from);
-    let bar = environment.progress(width * height * u64::from(plan.samples_per_pixel), "rendering");
+    let images = if matches!(plan.spectra, Spectra::Separate(_)) { 3 } else { 1 };
+    // Photons come on top of the background behind the medium.
+    let passes = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
+    let samples = width * height * u64::from(plan.samples_per_pixel) * images * passes;
+    let bar = environment.progress(samples, "rendering");
     let advance = |samples: u64| bar.inc(samples);
     let clock = Instant::now();
     let moments: Moments = match &plan.spectra {
-        Spectra::Gray(radiant) => draw(plan, radiant, &advance)?.into(),
-        Spectra::Colour(radiant) => draw(plan, radiant, &advance)?.into(),
+        Spectra::Gray(radiant) => draw(plan, radiant, plan.seed, &advance)?.into(),
+        Spectra::Colour(radiant) => draw(plan, radiant, plan.seed, &advance)?.into(),
+        Spectra::Separate(channels) => {
+            let channel = |k: usize| {
+                // Streams of their own, so that the noise of the channels is independent.
+                let seed = derive_seed(plan.seed, k as u64);
+                draw(plan, &channels[k], seed, &advance)
+                    .map_err(|failure| failure.within(["red", "green", "blue"][k]))
+            };
+            Drawn::of_channels([channel(0)?, channel(1)?, channel(2)?]).into()
+        }
     };
     let seconds = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
@@ -93,20 +108,28 @@ fn measure(plan: &ScenePlan, environment: &Environment) -> Result<(Moments, f64)
 /// What a reader of the image should know.
 fn warnings(spec: &SceneSpec, plan: &ScenePlan, moments: &Moments) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let IntegratorSpec::ParticleTracer(tracer) = &spec.integrator
+    warnings.extend(moments.warning());
+    if let Some(walk) = spec.integrator.walk()
         && moments.truncated() > 0
     {
         warnings.push(format!(
             "{} walks were cut after max_collisions = {}: what they had left is missing, a bias",
             moments.truncated(),
-            tracer.max_collisions
+            walk.max_collisions
         ));
     }
     warnings.extend(spec.integrator.biased_baseline().map(|what| format!("integrator: {what}")));
     let inside = |light: &LightSpec| matches!(light, LightSpec::Point { position, .. } if plan.bounds.contains(*position));
-    let connects =
-        matches!(spec.integrator, IntegratorSpec::ParticleTracer(_) | IntegratorSpec::ExpectedValue);
-    if connects && spec.medium.is_some() && spec.lights.iter().any(inside) {
+    let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
+    if photons && spec.medium.is_some() && plan.bounds.contains(plan.camera.origin()) {
+        warnings.push(
+            "the camera stands in the medium: the connection of photons with it has no second moment, errors are \
+             underrated"
+                .to_owned(),
+        );
+    }
+    if spec.integrator.walk().is_some() && !photons && spec.medium.is_some() && spec.lights.iter().any(inside)
+    {
         warnings.push(
             "a point light lies in the medium: the connection with it has no second moment, errors are underrated"
                 .to_owned(),

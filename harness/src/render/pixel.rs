@@ -1,6 +1,7 @@
 //! The moments of one pixel.
 
 use fairflight_scene::Spectrum;
+use glam::DVec3;
 
 /// Mean and squared deviations of the estimates of a pixel, updated one by one (Welford's recurrence).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,13 @@ impl<C: Spectrum> Pixel<C> {
         self.squared_gray += before.mean() * after.mean();
     }
 
+    /// Adds an independent estimate of another part of the radiance, of which one sample has this variance. It does not enter
+    /// [`mean_variance_gray`](Self::mean_variance_gray): what pixels share is not for one pixel to tell.
+    pub(super) fn add_independent(&mut self, mean: C, variance: C) {
+        self.mean += mean;
+        self.squared += variance * (self.count.max(1) - 1) as f64;
+    }
+
     /// The mean of the estimates.
     pub(super) fn mean(&self) -> C {
         self.mean
@@ -38,9 +46,23 @@ impl<C: Spectrum> Pixel<C> {
         (self.count > 1).then(|| self.squared * (1.0 / (self.count - 1) as f64))
     }
 
-    /// The sample variance of the mean of the channels of one estimate; `None` for fewer than two.
-    pub(super) fn variance_gray(&self) -> Option<f64> {
-        (self.count > 1).then(|| self.squared_gray / (self.count - 1) as f64)
+    /// The variance of the mean of the channels of all estimates; `None` for fewer than two.
+    pub(super) fn mean_variance_gray(&self) -> Option<f64> {
+        (self.count > 1).then(|| self.squared_gray / ((self.count - 1) * self.count) as f64)
+    }
+}
+
+impl Pixel<DVec3> {
+    /// A pixel of three channels that were estimated independently of each other, by as many estimates.
+    pub(super) fn of_channels(channels: [Pixel<f64>; 3]) -> Self {
+        let squared = DVec3::from_array(channels.map(|channel| channel.squared));
+        Self {
+            count: channels[0].count,
+            mean: DVec3::from_array(channels.map(|channel| channel.mean)),
+            squared,
+            // The variance of a mean of three independent numbers.
+            squared_gray: squared.element_sum() / 9.0,
+        }
     }
 }
 
@@ -59,6 +81,6 @@ mod tests {
         assert_eq!(pixel.mean(), dvec3(3.0, 2.0, 0.0));
         assert!((pixel.variance().unwrap() - dvec3(4.0, 0.0, 1.0)).length() < 1e-15);
         // Of 1, 2, 2.
-        assert!((pixel.variance_gray().unwrap() - 1.0 / 3.0).abs() < 1e-15);
+        assert!((pixel.mean_variance_gray().unwrap() - 1.0 / 9.0).abs() < 1e-15);
     }
 }

@@ -1,6 +1,7 @@
 //! What an image tells: mean radiance, variance, cost, efficiency.
 
 use super::draw::{Drawn, Spent};
+use super::pixel::Pixel;
 use crate::image::Image;
 use crate::plan::ScenePlan;
 use crate::result::{Provenance, number};
@@ -82,9 +83,10 @@ pub(super) struct Moments {
     means: Vec<[f64; 3]>,
     /// The mean over pixels and channels of the variance of one sample.
     variance: Option<f64>,
-    /// The mean over pixels of the variance of the mean of the channels of one sample.
-    variance_gray: Option<f64>,
+    /// The variance of the mean of all pixels and channels.
+    mean_variance: Option<f64>,
     cost: Spent,
+    warning: Option<String>,
 }
 
 impl<C: Spectrum> From<Drawn<C>> for Moments {
@@ -92,12 +94,14 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
         let pixels = &drawn.pixels;
         let n = pixels.len() as f64;
         let sum = |values: &mut dyn Iterator<Item = Option<f64>>| values.sum::<Option<f64>>().map(|s| s / n);
+        let apart = sum(&mut pixels.iter().map(Pixel::mean_variance_gray)).map(|variance| variance / n);
         Self {
             channels: C::CHANNELS,
             means: pixels.iter().map(|pixel| pixel.mean().rgb()).collect(),
             variance: sum(&mut pixels.iter().map(|pixel| pixel.variance().map(C::mean))),
-            variance_gray: sum(&mut pixels.iter().map(super::pixel::Pixel::variance_gray)),
+            mean_variance: apart.zip(drawn.shared_variance).map(|(apart, shared)| apart + shared),
             cost: drawn.cost,
+            warning: drawn.warning,
         }
     }
 }
@@ -161,12 +165,11 @@ impl Moments {
             squared_error.filter(|error| *error > 0.0 && cost > 0.0).map(|error| 1.0 / (error * cost))
         };
         let Spent { lookups, cpu_seconds, .. } = self.cost;
-        let pixels = self.means.len() as f64;
         Statistics {
             image: Size { width, height, samples_per_pixel: plan.samples_per_pixel, channels: self.channels },
             radiance: Radiance {
                 mean: mean[..self.channels].iter().sum::<f64>() / self.channels as f64,
-                standard_error: self.variance_gray.map(|variance| (variance / (samples * pixels)).sqrt()),
+                standard_error: self.mean_variance.map(f64::sqrt),
                 channels: mean[..self.channels].to_vec(),
             },
             variance: Variance { mean_per_pixel: self.variance },
@@ -185,6 +188,11 @@ impl Moments {
             warnings,
             provenance,
         }
+    }
+
+    /// What is to be said of the walks.
+    pub(super) fn warning(&self) -> Option<String> {
+        self.warning.clone()
     }
 
     /// Walks that were cut.

@@ -19,4 +19,5 @@ pub use profile::ProfileSpec;
 pub use scene::{
     Collisions, ColourSpec, IntegratorSpec, LightSpec, Particles, PhaseSpec, RayEstimatorSpec,
     SamplingFieldSpec, SceneOverrides, SceneSpec, SingleScatteringSpec, Strategy, TracerSpec, VolumeSpec,
+    WalkSpec,
 };

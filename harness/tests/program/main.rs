@@ -6,4 +6,5 @@ mod estimate;
 mod interrupt;
 mod refusals;
 mod render;
+mod render_refusals;
 mod report;

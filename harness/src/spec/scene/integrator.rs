@@ -5,7 +5,9 @@ use crate::Failure;
 use crate::spec::estimator::{one_of, read_version};
 use crate::spec::{Node, Object};
 use fairflight_collision::Version;
+use fairflight_paths::Grid;
 use fairflight_paths::single_scattering::Heuristic;
+use fairflight_transmittance::Starts;
 
 /// An integrator with its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +19,17 @@ pub enum IntegratorSpec {
     },
     /// szirmay-kalos-2017 section 4.1.
     ParticleTracer(TracerSpec),
-    /// Walks whose decisions are replaced by their expectations.
-    ExpectedValue,
+    /// raab-2008 section 3.1: several first collisions per camera ray, each continued by a walk.
+    LineSplitting {
+        /// The walks.
+        walk: WalkSpec,
+        /// A claim about the medium.
+        majorant: f64,
+        /// Flights per camera ray.
+        splits: u32,
+        /// Of their first steps.
+        starts: Starts,
+    },
     /// szirmay-kalos-2017 section 4.3.
     SingleScattering(SingleScatteringSpec),
 }
@@ -43,17 +54,24 @@ pub struct SingleScatteringSpec {
 /// Particle tracing with its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracerSpec {
+    /// How they walk.
+    pub walk: WalkSpec,
+    /// From where.
+    pub particles: Particles,
+}
+
+/// A walk with its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WalkSpec {
     /// How the probabilities of a collision are chosen.
     pub version: Version,
     /// σ_samp in space.
     pub sampling: SamplingFieldSpec,
     /// What is decided once for all channels.
     pub colour: Collisions,
-    /// From where.
-    pub particles: Particles,
     /// More collisions of one particle are cut off.
     pub max_collisions: u64,
-    /// Whether a walk may be run whose weights grow without bound.
+    /// Whether a walk may be run that has no second moment.
     pub allow_supercritical: bool,
 }
 
@@ -126,10 +144,20 @@ impl Strategy {
 const MOST_COLLISIONS: u64 = 1_000_000;
 /// More points per ray or pixels per control are a slip of the keyboard.
 const MOST: u64 = 1_000_000;
-/// More cells along an axis are a slip of the keyboard.
-const MOST_CELLS: u32 = 1024;
+/// More cells take minutes to fit.
+const MOST_CELLS: u64 = 1 << 24;
 
 impl IntegratorSpec {
+    /// The walks of an integrator that has some.
+    #[must_use]
+    pub fn walk(&self) -> Option<&WalkSpec> {
+        match self {
+            Self::ParticleTracer(tracer) => Some(&tracer.walk),
+            Self::LineSplitting { walk, .. } => Some(walk),
+            Self::Transmittance { .. } | Self::SingleScattering(_) => None,
+        }
+    }
+
     /// Reads `integrator`.
     ///
     /// # Errors
@@ -141,7 +169,16 @@ impl IntegratorSpec {
         let integrator = match kind.text()? {
             "transmittance" => Self::Transmittance { estimator: estimator()? },
             "particle_tracer" => Self::ParticleTracer(TracerSpec::take_from(&object)?),
-            "expected_value" => Self::ExpectedValue,
+            "line_splitting" => Self::LineSplitting {
+                walk: WalkSpec::take_from(&object)?,
+                majorant: object.required("majorant")?.non_negative()?,
+                splits: object.required("splits")?.integer(1, MOST)? as u32,
+                starts: named_or(
+                    &object,
+                    "starts",
+                    &[("equidistant", Starts::Equidistant), ("independent", Starts::Independent)],
+                )?,
+            },
             "single_scattering" => Self::SingleScattering(SingleScatteringSpec {
                 sampling: named(&object.required("sampling")?, &Strategy::NAMES)?,
                 estimator: estimator()?,
@@ -158,7 +195,7 @@ impl IntegratorSpec {
             }),
             _ => {
                 return Err(kind
-                    .refuse("must be transmittance, particle_tracer, expected_value or single_scattering"));
+                    .refuse("must be transmittance, particle_tracer, line_splitting or single_scattering"));
             }
         };
         object.finish()?;
@@ -168,25 +205,22 @@ impl IntegratorSpec {
 
 impl TracerSpec {
     fn take_from(object: &Object<'_>) -> Result<Self, Failure> {
+        let particles = [("importons", Particles::Importons), ("photons", Particles::Photons)];
+        Ok(Self { walk: WalkSpec::take_from(object)?, particles: named_or(object, "particles", &particles)? })
+    }
+}
+
+impl WalkSpec {
+    fn take_from(object: &Object<'_>) -> Result<Self, Failure> {
+        let colours = [("shared", Collisions::Shared), ("separate", Collisions::Separate)];
+        let most = object.optional("max_collisions");
+        let allow = object.optional("allow_supercritical");
         Ok(Self {
             version: read_version(&object.required("version")?)?,
             sampling: SamplingFieldSpec::read(&object.required("sigma_samp")?)?,
-            colour: named_or(
-                object,
-                "colour",
-                &[("shared", Collisions::Shared), ("separate", Collisions::Separate)],
-            )?,
-            particles: named_or(
-                object,
-                "particles",
-                &[("importons", Particles::Importons), ("photons", Particles::Photons)],
-            )?,
-            max_collisions: object
-                .optional("max_collisions")
-                .map_or(Ok(MOST_COLLISIONS), |node| node.integer(1, u64::MAX))?,
-            allow_supercritical: object
-                .optional("allow_supercritical")
-                .map_or(Ok(false), |node| node.boolean())?,
+            colour: named_or(object, "colour", &colours)?,
+            max_collisions: most.map_or(Ok(MOST_COLLISIONS), |node| node.integer(1, u64::MAX))?,
+            allow_supercritical: allow.map_or(Ok(false), |node| node.boolean())?,
         })
     }
 }
@@ -199,8 +233,13 @@ impl SamplingFieldSpec {
             });
         }
         let object = node.object()?;
+        let cells = object.required("cells")?;
+        let numbers = cells.integers(1, Grid::MOST_CELLS as u32)?;
+        if numbers.iter().map(|&count| u64::from(count)).product::<u64>() > MOST_CELLS {
+            return Err(cells.refuse(format!("must be at most {MOST_CELLS} cells altogether")));
+        }
         let field = Self::Grid {
-            cells: object.required("cells")?.integers(1, MOST_CELLS)?,
+            cells: numbers,
             factor: object.required("factor")?.positive()?,
             floor: object.required("floor")?.positive()?,
         };

@@ -10,6 +10,7 @@ mod volume;
 pub use colour::ColourSpec;
 pub use integrator::{
     Collisions, IntegratorSpec, Particles, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec,
+    WalkSpec,
 };
 pub use light::LightSpec;
 pub use ray_estimator::RayEstimatorSpec;
@@ -82,6 +83,6 @@ impl SceneSpec {
     #[must_use]
     pub fn is_gray(&self) -> bool {
         self.medium.iter().all(|medium| medium.albedo.is_gray())
-            && self.lights.iter().filter_map(LightSpec::strength).all(|strength| strength.is_gray())
+            && self.lights.iter().filter_map(LightSpec::strength).all(ColourSpec::is_gray)
     }
 }
