@@ -15,7 +15,7 @@ use crate::{DONE, Environment, Failure};
 use draw::{Drawn, draw};
 use fairflight_sources::derive_seed;
 use output::{Kind, Prepared};
-use statistics::Moments;
+pub(crate) use statistics::Moments;
 use std::io::{Read, Write};
 use std::time::Instant;
 
@@ -85,24 +85,31 @@ fn measure(plan: &ScenePlan, environment: &Environment) -> Result<(Moments, f64)
     let passes = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
     let samples = width * height * u64::from(plan.samples_per_pixel) * images * passes;
     let bar = environment.progress(samples, "rendering");
-    let advance = |samples: u64| bar.inc(samples);
     let clock = Instant::now();
-    let moments: Moments = match &plan.spectra {
-        Spectra::Gray(radiant) => draw(plan, radiant, plan.seed, &advance)?.into(),
-        Spectra::Colour(radiant) => draw(plan, radiant, plan.seed, &advance)?.into(),
+    let moments = moments(plan, &|samples| bar.inc(samples))?;
+    let seconds = clock.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    Ok((moments, seconds))
+}
+
+/// Draws the image of a plan on the threads of the current pool. `advance` is told how many samples were added.
+///
+/// # Errors
+/// If a look-up is not lawful, or a sample not finite.
+pub(crate) fn moments(plan: &ScenePlan, advance: &(dyn Fn(u64) + Sync)) -> Result<Moments, Failure> {
+    Ok(match &plan.spectra {
+        Spectra::Gray(radiant) => draw(plan, radiant, plan.seed, advance)?.into(),
+        Spectra::Colour(radiant) => draw(plan, radiant, plan.seed, advance)?.into(),
         Spectra::Separate(channels) => {
             let channel = |k: usize| {
                 // Streams of their own, so that the noise of the channels is independent.
                 let seed = derive_seed(plan.seed, k as u64);
-                draw(plan, &channels[k], seed, &advance)
+                draw(plan, &channels[k], seed, advance)
                     .map_err(|failure| failure.within(["red", "green", "blue"][k]))
             };
             Drawn::of_channels([channel(0)?, channel(1)?, channel(2)?]).into()
         }
-    };
-    let seconds = clock.elapsed().as_secs_f64();
-    bar.finish_and_clear();
-    Ok((moments, seconds))
+    })
 }
 
 /// What a reader of the image should know.

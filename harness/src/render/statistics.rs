@@ -77,7 +77,7 @@ pub(super) struct Efficiency {
 
 /// What was drawn, read by all writers.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Moments {
+pub(crate) struct Moments {
     channels: usize,
     /// Mean radiance per pixel.
     means: Vec<[f64; 3]>,
@@ -107,6 +107,26 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
 }
 
 impl Moments {
+    /// The mean radiance of each pixel, row by row from the top.
+    pub(crate) fn means(&self) -> &[[f64; 3]] {
+        &self.means
+    }
+
+    /// The mean over pixels and channels of the variance of one sample; `None` for one sample per pixel.
+    pub(crate) fn variance(&self) -> Option<f64> {
+        self.variance
+    }
+
+    /// Look-ups of the medium.
+    pub(crate) fn lookups(&self) -> u64 {
+        self.cost.lookups
+    }
+
+    /// CPU seconds over all threads.
+    pub(crate) fn cpu_seconds(&self) -> f64 {
+        self.cost.cpu_seconds
+    }
+
     /// The image; a pixel that f32 cannot hold is named.
     pub(super) fn image(&self, plan: &ScenePlan) -> Result<Image, String> {
         let [width, height] = plan.camera.resolution().map(|side| side as usize);

@@ -2,8 +2,12 @@
 
 pub(crate) mod command;
 pub mod document;
+mod particle_tracing;
+mod progress;
 pub(crate) mod registry;
+mod replicas;
 pub mod result;
+mod single_scattering;
 mod stability;
 pub mod study;
 pub mod write;

@@ -1,6 +1,7 @@
 //! The reports that there are, by name.
 
 use super::document::{Document, Options};
+use super::{particle_tracing, single_scattering};
 use crate::{Environment, Failure};
 
 /// A report that can be asked for.
@@ -19,16 +20,27 @@ pub(crate) enum Study {
     /// The standard report, which has a structure of its own and takes a volume.
     Standard,
     /// A document, measured on the threads of the current pool.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the first study that is a document brings its entry"))]
     Document(fn(&Options, &Environment) -> Result<Document, Failure>),
 }
 
 /// All reports; the first is the default.
-pub(crate) const REPORTS: [ReportKind; 1] = [ReportKind {
-    name: "standard",
-    about: "transmittance estimators against their closed forms",
-    study: Study::Standard,
-}];
+pub(crate) const REPORTS: [ReportKind; 3] = [
+    ReportKind {
+        name: "standard",
+        about: "transmittance estimators against their closed forms",
+        study: Study::Standard,
+    },
+    ReportKind {
+        name: "particle-tracing",
+        about: "multiple scattering over the sampling extinction: three versions, noise, growth, speed",
+        study: Study::Document(particle_tracing::document),
+    },
+    ReportKind {
+        name: "single-scattering",
+        about: "a point light in a medium: all methods at equal look-ups, speed against error",
+        study: Study::Document(single_scattering::document),
+    },
+];
 
 /// The report of this name.
 pub(crate) fn find(name: &str) -> Result<&'static ReportKind, Failure> {

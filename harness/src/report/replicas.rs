@@ -1,0 +1,209 @@
+//! A scene rendered several times over: images with the mean squared error that they have, and an interval of it.
+
+use crate::Failure;
+use crate::plan::{MediumLibrary, ScenePlan, Spectra};
+use crate::render::{Moments, moments};
+use crate::spec::{SceneOverrides, SceneSpec};
+use fairflight_scene::EnvironmentMap;
+use fairflight_sources::derive_seed;
+use serde_json::Value;
+
+/// A scene of a report: the JSON that `harness render` takes, and perhaps a map that lights it.
+#[derive(Clone, Debug)]
+pub(super) struct Subject {
+    /// The scene, without seed and samples per pixel.
+    pub(super) scene: Value,
+    /// A gray map on top of its lights.
+    pub(super) map: Option<EnvironmentMap<f64>>,
+}
+
+impl Subject {
+    pub(super) fn new(scene: Value) -> Self {
+        Self { scene, map: None }
+    }
+
+    /// The same scene with this value at a path of keys.
+    pub(super) fn with(&self, path: &str, value: impl Into<Value>) -> Self {
+        let mut changed = self.clone();
+        let mut node = &mut changed.scene;
+        for key in path.split('.') {
+            node = &mut node[key];
+        }
+        *node = value.into();
+        changed
+    }
+
+    /// The plan of one replica.
+    fn plan(&self, samples_per_pixel: u32, seed: u64, library: &MediumLibrary) -> Result<ScenePlan, Failure> {
+        let overrides = SceneOverrides { samples_per_pixel: Some(samples_per_pixel), seed: Some(seed) };
+        let spec = SceneSpec::parse(&self.scene.to_string(), overrides)?;
+        let mut plan = ScenePlan::of(&spec, library)?;
+        if let (Some(map), Spectra::Gray(radiant)) = (&self.map, &mut plan.spectra) {
+            radiant.lights.background.maps.push(map.clone());
+        }
+        Ok(plan)
+    }
+
+    /// Renders once.
+    pub(super) fn render(
+        &self,
+        samples_per_pixel: u32,
+        seed: u64,
+        library: &MediumLibrary,
+    ) -> Result<Picture, Failure> {
+        let plan = self.plan(samples_per_pixel, seed, library)?;
+        let resolution = plan.camera.resolution().map(|side| side as usize);
+        Ok(Picture { moments: moments(&plan, &|_| {})?, resolution })
+    }
+
+    /// Renders `replicas` ≥ 2 independent images.
+    pub(super) fn measure(
+        &self,
+        samples_per_pixel: u32,
+        (seed, replicas): (u64, u32),
+        library: &MediumLibrary,
+    ) -> Result<Replicas, Failure> {
+        let images = (0..u64::from(replicas.max(2)))
+            .map(|k| self.render(samples_per_pixel, derive_seed(seed, k), library))
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Replicas { images, samples_per_pixel })
+    }
+}
+
+/// An image of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    moments: Moments,
+    resolution: [usize; 2],
+}
+
+impl Picture {
+    /// Columns and rows.
+    pub(super) fn resolution(&self) -> [usize; 2] {
+        self.resolution
+    }
+
+    /// The mean radiance of each pixel, row by row from the top.
+    pub(super) fn means(&self) -> &[[f64; 3]] {
+        self.moments.means()
+    }
+
+    /// The same of a gray scene.
+    fn gray(&self) -> impl Iterator<Item = f64> + '_ {
+        self.means().iter().map(|[gray, ..]| *gray)
+    }
+
+    /// Look-ups per pixel, on average.
+    pub(super) fn lookups_per_pixel(&self) -> f64 {
+        self.moments.lookups() as f64 / self.means().len() as f64
+    }
+}
+
+/// Independent images of one scene.
+#[derive(Clone, Debug)]
+pub(super) struct Replicas {
+    images: Vec<Picture>,
+    samples_per_pixel: u32,
+}
+
+/// A number with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Measured {
+    pub(super) value: f64,
+    pub(super) interval: [f64; 2],
+}
+
+impl Measured {
+    /// The mean of independent positive numbers, by Student's t of their logarithms: errors multiply.
+    fn of_positive(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let value = values.iter().sum::<f64>() / n;
+        if values.iter().any(|&x| x <= 0.0) {
+            return Self { value, interval: [f64::NAN; 2] };
+        }
+        let mean = values.iter().map(|x| x.ln()).sum::<f64>() / n;
+        let variance = values.iter().map(|x| (x.ln() - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let factor = (student_quantile(values.len() - 1) * (variance / n).sqrt()).exp();
+        Self { value, interval: [value / factor, value * factor] }
+    }
+
+    /// A decreasing or increasing function of it.
+    pub(super) fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        let [a, b] = self.interval.map(&function);
+        Self { value: function(self.value), interval: [a.min(b), a.max(b)] }
+    }
+
+    /// Whether it is certainly below another one: the intervals are apart.
+    pub(super) fn is_below(&self, other: &Self) -> bool {
+        self.interval[1] < other.interval[0]
+    }
+}
+
+/// The two-sided 95 % quantile of Student's t.
+fn student_quantile(degrees: usize) -> f64 {
+    const TABLE: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
+    TABLE.get(degrees.saturating_sub(1)).copied().unwrap_or(1.96)
+}
+
+impl Replicas {
+    /// The mean over pixels of the squared error of one image, from the sample variance of its pixels: unbiased without a
+    /// reference, for an unbiased integrator.
+    pub(super) fn squared_error(&self) -> Measured {
+        let n = f64::from(self.samples_per_pixel);
+        let variance = |image: &Picture| image.moments.variance().unwrap_or(f64::NAN);
+        let errors: Vec<f64> = self.images.iter().map(|image| variance(image) / n).collect();
+        Measured::of_positive(&errors)
+    }
+
+    /// The mean over pixels of the squared difference of one image from a reference with the squared error `of_reference`, which
+    /// is subtracted: right also for a biased integrator.
+    pub(super) fn squared_difference(&self, reference: &[f64], of_reference: f64) -> Measured {
+        let errors: Vec<f64> = self
+            .images
+            .iter()
+            .map(|image| {
+                let squares = image.gray().zip(reference).map(|(found, exact)| (found - exact).powi(2));
+                squares.sum::<f64>() / reference.len() as f64 - of_reference
+            })
+            .collect();
+        Measured::of_positive(&errors)
+    }
+
+    /// The first image: what one sees.
+    pub(super) fn first(&self) -> &Picture {
+        &self.images[0]
+    }
+
+    /// The mean of all images, gray, and its squared error.
+    pub(super) fn mean(&self) -> (Vec<f64>, f64) {
+        let n = self.images.len() as f64;
+        let mut mean = vec![0.0; self.first().gray().count()];
+        for image in &self.images {
+            for (sum, value) in mean.iter_mut().zip(image.gray()) {
+                *sum += value / n;
+            }
+        }
+        (mean, self.squared_error().value / n)
+    }
+
+    /// Look-ups per pixel of one image, on average.
+    pub(super) fn lookups_per_pixel(&self) -> f64 {
+        let n = self.images.len() as f64;
+        self.images.iter().map(Picture::lookups_per_pixel).sum::<f64>() / n
+    }
+
+    /// CPU seconds of one image, on average.
+    pub(super) fn seconds(&self) -> f64 {
+        self.images.iter().map(|image| image.moments.cpu_seconds()).sum::<f64>() / self.images.len() as f64
+    }
+
+    /// Camera rays per pixel of one image.
+    pub(super) fn rays_per_pixel(&self) -> u32 {
+        self.samples_per_pixel
+    }
+
+    /// Whether the pixels have more than one sample, so that their variance is known.
+    pub(super) fn variance_is_known(&self) -> bool {
+        self.samples_per_pixel > 1
+    }
+}

@@ -1,0 +1,85 @@
+//! S9 of the ledger, and the findings of the report.
+
+use super::Lighting;
+use super::equal_cost::{Budget, Study};
+use super::speed::Speed;
+use crate::report::result::{Claim, ClaimVerdict};
+
+/// The method that S9 says wins.
+const MIS: &str = "source and scattering";
+
+/// S9: where the point light dominates, MIS of source- and scattering-driven sampling has the least error.
+///
+/// Criterion: under the strong point light it has the least error of all unbiased methods at both budgets, or none is separable
+/// from it by the 95 % intervals.
+pub(super) fn s9(studies: &[Study]) -> Claim {
+    let point = studies.iter().find(|study| study.lighting == Lighting::Point);
+    let budgets: &[Budget] = point.map_or(&[], |study| &study.budgets);
+    let wins = |budget: &&Budget| {
+        let mis = budget.entries.iter().find(|entry| entry.name == MIS);
+        mis.is_some_and(|mis| {
+            budget.entries.iter().all(|entry| entry.is_baseline || !entry.rmse.is_below(&mis.rmse))
+        })
+    };
+    let won = budgets.iter().filter(wins).count();
+    let words = |budget: &Budget| {
+        let ranked: Vec<String> = budget
+            .ranking()
+            .iter()
+            .take(4)
+            .map(|entry| {
+                let [low, high] = entry.rmse.interval;
+                format!("{} {:.4} [{low:.4}, {high:.4}]", entry.name, entry.rmse.value)
+            })
+            .collect();
+        format!("{} look-ups: {}", budget.lookups, ranked.join(", "))
+    };
+    Claim {
+        id: "S9".to_owned(),
+        claim: "At about 300 and 50 look-ups per pixel, MIS of source-driven and scattering-driven sampling wins where the point light \
+                dominates"
+            .to_owned(),
+        source: "szirmay-kalos-2017 fig. 12".to_owned(),
+        measured: budgets.iter().map(words).collect::<Vec<_>>().join("; "),
+        verdict: match won {
+            0 => ClaimVerdict::DoesNotHold,
+            n if n == budgets.len() => ClaimVerdict::Holds,
+            _ => ClaimVerdict::HoldsUnder,
+        },
+        comment: "RMSE of the unbiased methods, least first. What wins depends on what a look-up costs beside a camera ray: attenuation-driven \
+                  sampling reuses those of the walk."
+            .to_owned(),
+    }
+}
+
+/// The findings, in words.
+pub(super) fn summary(studies: &[Study], speed: &Speed) -> Vec<String> {
+    let mut summary = Vec::new();
+    for study in studies {
+        for budget in &study.budgets {
+            let best = budget.ranking()[0];
+            summary.push(format!(
+                "{} look-ups per pixel under {}: least error {} with {:.4} [{:.4}, {:.4}].",
+                budget.lookups,
+                study.lighting.words(),
+                best.name,
+                best.rmse.value,
+                best.rmse.interval[0],
+                best.rmse.interval[1]
+            ));
+        }
+    }
+    let fastest = speed
+        .methods
+        .iter()
+        .max_by(|a, b| a.per_second.value.total_cmp(&b.per_second.value))
+        .expect("there are methods");
+    summary.push(format!(
+        "Fastest: {}, 1/(MSE · CPU s) = {:.3e} [{:.3e}, {:.3e}].",
+        fastest.name,
+        fastest.per_second.value,
+        fastest.per_second.interval[0],
+        fastest.per_second.interval[1]
+    ));
+    summary
+}
