@@ -54,6 +54,7 @@ media!(
     voxels,
     expression,
     freeflight,
+    paths,
 );
 
 #[test]
