@@ -11,13 +11,13 @@ use fairflight_paths::{Uniform, Walk};
 use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, Scene, Source, Volume};
 use glam::{DVec3, dvec3};
 
-const SAMPLES: u64 = 400_000;
+const SAMPLES: u64 = 100_000;
 
 /// One check per kind of light.
 pub(super) fn checks() -> Vec<Check> {
     let dark = || Lights { background: Background::dark(), sources: Vec::new() };
     let directional = Source::directional(dvec3(0.6, -0.7, 0.4), 3.0).expect(LAWFUL);
-    let point = Source::point(dvec3(-2.0, 2.5, 8.0), 100.0).expect(LAWFUL);
+    let point = Source::point(dvec3(-2.2, 1.6, 9.0), 100.0).expect(LAWFUL);
     // Twice as bright at +x as at −x, and more so towards +y.
     let gradient = EnvironmentMap::new(4, 2, vec![3.0, 4.0, 3.0, 2.0, 1.5, 2.0, 1.5, 1.0]).expect(LAWFUL);
     let background = |constant, maps| Background { constant, maps };
@@ -25,27 +25,23 @@ pub(super) fn checks() -> Vec<Check> {
         adjoint("directional", Lights { sources: vec![directional], ..dark() }),
         adjoint("point_outside", Lights { sources: vec![point], ..dark() }),
         adjoint("constant", Lights { background: background(1.0, vec![]), ..dark() }),
-        adjoint("map", Lights { background: background(0.0, vec![gradient.clone()]), ..dark() }),
-        adjoint(
-            "all_lights",
-            Lights { background: background(0.5, vec![gradient]), sources: vec![directional, point] },
-        ),
+        adjoint("map", Lights { background: background(0.0, vec![gradient]), ..dark() }),
     ]
 }
 
 fn adjoint(name: &str, lights: Lights<f64>) -> Check {
     let scene = Scene {
-        camera: Camera::new(dvec3(0.8, 0.5, 4.0), dvec3(0.0, 0.0, 10.0), DVec3::Y, 40.0, [2, 2])
+        camera: Camera::new(dvec3(2.0, 1.0, -10.0), dvec3(0.0, 0.0, 10.0), DVec3::Y, 12.0, [2, 2])
             .expect(LAWFUL),
         volume: Volume {
-            medium: AnalyticCosine::new(1.0).expect(LAWFUL),
+            medium: AnalyticCosine::new(2.0).expect(LAWFUL),
             bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), 2.0).expect(LAWFUL),
-            albedo: 0.8,
+            albedo: 0.7,
             phase: HenyeyGreenstein::new(0.5).expect(LAWFUL),
         },
         lights,
     };
-    let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).expect(LAWFUL));
+    let walk = Walk::new(Version::NonTerminating, Uniform::new(1.6).expect(LAWFUL));
     let id = format!("paths/adjoint/{name}");
     Check::new(id, Law::Adjoint, "photons and importons", "eq21", SAMPLES, move |run| {
         check(&scene, &walk, run)

@@ -45,11 +45,12 @@ pub(super) fn checks() -> Vec<Check> {
     // Below it energies grow to 2 r − 1 at a collision, and leaking must outweigh that. The terminating version ends at
     // r = 2/(1 + a) = 1.
     for (version, name) in &VERSIONS[1..] {
-        let walk = Walk::new(*version, Uniform::new(0.8).expect(LAWFUL));
+        let walk = Walk::new(*version, Uniform::new(0.6).expect(LAWFUL));
         checks.push(furnace(&format!("furnace/eq21/{name}_below"), eq21(3.0, forward()), walk, WEIGHTED));
         let id = format!("furnace/homogeneous/{name}_below");
+        let walk = Walk::new(*version, Uniform::new(0.8).expect(LAWFUL));
         checks.push(furnace(&id, homogeneous(0.25, Rayleigh), walk, WEIGHTED));
-        let walk = Walk::new(*version, grid(0.7, 3.0));
+        let walk = Walk::new(*version, grid(0.8, 3.0));
         checks.push(furnace(
             &format!("furnace/eq21/{name}_grid_below"),
             eq21(3.0, Isotropic),
@@ -59,7 +60,7 @@ pub(super) fn checks() -> Vec<Check> {
     }
     for (starts, name) in [(Starts::Equidistant, "equidistant"), (Starts::Independent, "independent")] {
         checks.push(splitting(&format!("furnace/eq21/splitting_{name}"), starts, 1.0, WITHOUT_VARIANCE));
-        checks.push(splitting(&format!("furnace/eq21/splitting_{name}_below"), starts, 0.8, WEIGHTED / 4));
+        checks.push(splitting(&format!("furnace/eq21/splitting_{name}_below"), starts, 0.6, WEIGHTED / 4));
     }
     checks
 }

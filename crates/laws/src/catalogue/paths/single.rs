@@ -14,7 +14,7 @@ use fairflight_transmittance::{LineIntegral, Regular, Starts};
 use glam::{DVec3, dvec3};
 use std::sync::Arc;
 
-const SAMPLES: u64 = 60_000;
+const SAMPLES: u64 = 50_000;
 
 /// A medium in light, and two rays through it: their explorers are shared.
 struct Scene<M, P> {
@@ -45,7 +45,7 @@ pub(super) fn checks() -> Vec<Check> {
             &outside,
             "below, borrowed control",
             sampling,
-            tracked(double(), 0.7, Some((6, 3))),
+            tracked(double(), 0.7, Some((10, 3))),
             Regular,
         ));
     }
@@ -151,7 +151,7 @@ where
     })
 }
 
-/// A point light in eq. 21, half a unit beside one of the rays, before a background.
+/// A point light in eq. 21, where that is dense, one unit beside one of the rays, before a background.
 fn point_inside() -> Scene<AnalyticCosine, HenyeyGreenstein> {
     Scene {
         name: "eq21 point inside",
@@ -163,7 +163,7 @@ fn point_inside() -> Scene<AnalyticCosine, HenyeyGreenstein> {
         },
         lights: Lights {
             background: Background { constant: 0.05, maps: Vec::new() },
-            sources: vec![Source::point(dvec3(0.6, 0.4, 10.5), 10.0).expect(LAWFUL)],
+            sources: vec![Source::point(dvec3(0.9, 0.5, 11.1), 10.0).expect(LAWFUL)],
         },
         lines: [
             line(dvec3(0.0, 0.0, -20.0), dvec3(0.005, 0.01, 1.0)),
@@ -187,7 +187,7 @@ fn camera_inside() -> Scene<AnalyticCosine, Rayleigh> {
             background: Background::dark(),
             sources: vec![Source::point(dvec3(3.0, 2.5, 9.0), 50.0).expect(LAWFUL)],
         },
-        lines: [line(camera, dvec3(0.1, 0.2, 1.0)), line(camera, dvec3(-0.3, 0.25, 0.9))],
+        lines: [line(camera, dvec3(0.1, 0.2, 1.0)), line(camera, dvec3(0.13, 0.17, 1.0))],
     }
 }
 

@@ -39,7 +39,7 @@ fn growing(version: Version, name: &str, albedo: f64, r: f64) -> Check {
 /// background.
 fn truncation(counted: bool) -> Check {
     let (name, rate, length) = (if counted { "counted" } else { "missing" }, 1.2, 1.4);
-    radiance(format!("truncation/{name}"), "importons, cut", "homogeneous", 50_000, move |run| {
+    radiance(format!("truncation/{name}"), "importons, cut", "homogeneous", 150_000, move |run| {
         let volume = Volume {
             medium: Homogeneous::new(1.0).expect(LAWFUL),
             bounds: Bounds::sphere(DVec3::ZERO, 0.5 * length).expect(LAWFUL),
