@@ -8,21 +8,23 @@ use fairflight_sources::{Seeded, UniformSource, derive_seed};
 use fairflight_stats::{Moments, Reference, judge};
 use fairflight_transmittance::Regular;
 
-/// Photons per sample: cheaper than the importons of all pixels, and most of them are not seen.
-const PHOTONS: u32 = 8;
-
 /// **Law.** For the sum of all pixels, and for the sum with the weights 1, 2, 3 … in the order of rows,
 /// E\[importons\] − what comes unscattered = E\[photons\].
 ///
-/// One sample is an importon in each pixel, less the background through the closed form of transmittance, and less the mean of 8
-/// photons, all independent: its expectation is 0, and its variance holds both standard errors. A constant is added so that power can be told
+/// One sample is an importon in each pixel, less the background through the closed form of transmittance, and less the mean of
+/// `photons_per_sample` photons, all independent: its expectation is 0, and its variance holds both standard errors. A constant is added so that power can be told
 /// as a relative bias: the mean of the importons in a run of their own. Half of the false alarm goes to each of the two sums. The second
 /// tells pixels apart; an asymmetric phase function, a camera off the axis and uneven lights make a mistaken direction show. (A pixel
 /// alone would ask for ten times the samples: few photons are seen in it.)
 ///
 /// # Errors
 /// If an estimate is no number.
-pub fn check<M, P, R>(scene: &Scene<M, P, f64>, walk: &Walk<R>, run: Run) -> Result<CheckResult, NotFinite>
+pub fn check<M, P, R>(
+    scene: &Scene<M, P, f64>,
+    walk: &Walk<R>,
+    photons_per_sample: u32,
+    run: Run,
+) -> Result<CheckResult, NotFinite>
 where
     M: LineThickness,
     P: PhaseFunction,
@@ -58,10 +60,10 @@ where
         others.clear();
         draw_batch(run.seed, batch, run.samples, &mut values, |source| {
             let [mut sum, mut weighted_sum] = importons(source);
-            for _ in 0..PHOTONS {
+            for _ in 0..photons_per_sample {
                 photons.trace(source, |pixel, value| {
-                    sum -= value / f64::from(PHOTONS);
-                    weighted_sum -= weight(pixel) * value / f64::from(PHOTONS);
+                    sum -= value / f64::from(photons_per_sample);
+                    weighted_sum -= weight(pixel) * value / f64::from(photons_per_sample);
                 });
             }
             others.push(weighted_scale + weighted_sum);

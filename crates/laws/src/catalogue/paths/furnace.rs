@@ -13,7 +13,7 @@ use glam::{DVec3, dvec3};
 
 /// Walks of a rate that is nowhere below the extinction keep an energy of 1 exactly: few of them tell.
 const WITHOUT_VARIANCE: u64 = 2_000;
-const WEIGHTED: u64 = 200_000;
+const WEIGHTED: u64 = 320_000;
 
 const VERSIONS: [(Version, &str); 3] = [
     (Version::Terminating, "terminating"),
@@ -34,7 +34,7 @@ pub(super) fn checks() -> Vec<Check> {
             let id = format!("furnace/homogeneous/{name}_{rate}");
             checks.push(furnace(&id, homogeneous(4.0, Isotropic), walk, WITHOUT_VARIANCE));
         }
-        let walk = Walk::new(version, grid(1.5, 10.0));
+        let walk = Walk::new(version, grid(1.5, &eq21(10.0, Isotropic)));
         checks.push(furnace(
             &format!("furnace/eq21/{name}_grid"),
             eq21(10.0, forward()),
@@ -42,25 +42,25 @@ pub(super) fn checks() -> Vec<Check> {
             WITHOUT_VARIANCE,
         ));
     }
-    // Below it energies grow to 2 r − 1 at a collision, and leaking must outweigh that. The terminating version ends at
-    // r = 2/(1 + a) = 1.
+    // Below it energies grow to 2 r − 1 at a collision, and leaking must outweigh that: small media, dense ones so that energies vary
+    // often and not rarely. The terminating version ends at r = 2/(1 + a) = 1.
     for (version, name) in &VERSIONS[1..] {
-        let walk = Walk::new(*version, Uniform::new(0.6).expect(LAWFUL));
-        checks.push(furnace(&format!("furnace/eq21/{name}_below"), eq21(3.0, forward()), walk, WEIGHTED));
-        let id = format!("furnace/homogeneous/{name}_below");
+        let walk = Walk::new(*version, Uniform::new(0.5).expect(LAWFUL));
+        checks.push(furnace(&format!("furnace/eq21/{name}_below"), dense(forward()), walk, WEIGHTED));
         let walk = Walk::new(*version, Uniform::new(0.8).expect(LAWFUL));
+        let id = format!("furnace/homogeneous/{name}_below");
         checks.push(furnace(&id, homogeneous(0.25, Rayleigh), walk, WEIGHTED));
-        let walk = Walk::new(*version, grid(0.8, 3.0));
-        checks.push(furnace(
-            &format!("furnace/eq21/{name}_grid_below"),
-            eq21(3.0, Isotropic),
-            walk,
-            WEIGHTED,
-        ));
+        let walk = Walk::new(*version, grid(0.75, &dense(Isotropic)));
+        checks.push(furnace(&format!("furnace/eq21/{name}_grid_below"), dense(Isotropic), walk, WEIGHTED));
     }
     for (starts, name) in [(Starts::Equidistant, "equidistant"), (Starts::Independent, "independent")] {
         checks.push(splitting(&format!("furnace/eq21/splitting_{name}"), starts, 1.0, WITHOUT_VARIANCE));
-        checks.push(splitting(&format!("furnace/eq21/splitting_{name}_below"), starts, 0.6, WEIGHTED / 4));
+        checks.push(splitting(
+            &format!("furnace/eq21/splitting_{name}_below"),
+            starts,
+            0.5,
+            3 * WEIGHTED / 4,
+        ));
     }
     checks
 }
@@ -87,9 +87,14 @@ fn homogeneous<P>(radius: f64, phase: P) -> Volume<Homogeneous, P, f64> {
     }
 }
 
+/// A ball half a unit around (0, 0, 4π), where eq. 21 is dense: σ_t is 2/3 in the middle, up to 0.7, and down to 0.07.
+fn dense<P>(phase: P) -> Volume<AnalyticCosine, P, f64> {
+    let bounds = Bounds::sphere(dvec3(0.0, 0.0, 4.0 * std::f64::consts::PI), 0.5).expect(LAWFUL);
+    Volume { bounds, ..eq21(1.0, phase) }
+}
+
 /// `factor` times the greatest value found in each of 12³ cells, at least 0.1.
-fn grid(factor: f64, radius: f64) -> Grid {
-    let volume = eq21(radius, Isotropic);
+fn grid(factor: f64, volume: &Volume<AnalyticCosine, Isotropic, f64>) -> Grid {
     Grid::fitted(&volume.medium, &volume.bounds, [12; 3], (6, factor, 0.1)).expect(LAWFUL)
 }
 
@@ -119,10 +124,35 @@ where
 
 fn splitting(id: &str, starts: Starts, sigma_samp: f64, samples: u64) -> Check {
     radiance(id, "splitting by algorithm 2", "furnace", samples, move |run| {
-        let (volume, lights) = (eq21(3.0, forward()), lights());
+        let (volume, lights) = (dense(forward()), lights());
         let walk = Walk::new(Version::NonTerminating, Uniform::new(sigma_samp).expect(LAWFUL));
         let line = LineIntegral::new(4).expect(LAWFUL);
         let mut tracer = LineSplitting::new(&volume, &lights, walk, (line, starts, 1.0));
         check(&mut tracer, &lines(), &Reference::exact(1.0), run)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_paths::{Criticality, second_moment_growth};
+    use fairflight_sources::Seeded;
+
+    #[test]
+    fn the_walks_below_the_extinction_are_subcritical() {
+        fn criticality<M: Medium, P: PhaseFunction, R: SamplingExtinction>(
+            volume: &Volume<M, P, f64>,
+            sampling: R,
+        ) -> Criticality {
+            let walk = Walk::new(Version::NonTerminating, sampling);
+            second_moment_growth(volume, &walk, &mut Seeded::new(1)).unwrap().criticality()
+        }
+        let uniform = |sigma_samp| Uniform::new(sigma_samp).unwrap();
+        assert_eq!(criticality(&dense(forward()), uniform(0.5)), Criticality::Subcritical);
+        assert_eq!(criticality(&homogeneous(0.25, Rayleigh), uniform(0.8)), Criticality::Subcritical);
+        let dense = dense(Isotropic);
+        assert_eq!(criticality(&dense, grid(0.75, &dense)), Criticality::Subcritical);
+        // And a walk that is not: a furnace of 4 mean free paths at the same rate.
+        assert_eq!(criticality(&homogeneous(4.0, Isotropic), uniform(0.8)), Criticality::Supercritical);
+    }
 }

@@ -56,7 +56,7 @@ impl View {
     fn needs_more(&self, rate: f64) -> bool {
         self.albedo <= 0.3
             || self.optical_thickness < 1.0
-            || (self.lit == Lit::Normally && (!self.reflected || rate == 1.0))
+            || (self.lit == Lit::Normally && self.optical_thickness < 5.0 && (!self.reflected || rate == 1.0))
     }
 
     fn name(&self) -> String {
@@ -165,7 +165,7 @@ fn coloured(lit: Lit) -> Check {
     const ALBEDO: DVec3 = DVec3::new(0.9, 0.6, 0.999);
     let view = move |albedo| View::new(1.0, albedo, lit, true);
     let id = format!("paths/slab/{} coloured", view(0.999).name());
-    Check::new(id, Law::Radiance, "importons in colour", "slab", SAMPLES, move |run| {
+    Check::new(id, Law::Radiance, "importons in colour", "slab", 3 * SAMPLES / 2, move |run| {
         let volume = slab::volume(1.0, ALBEDO, Isotropic).expect(LAWFUL);
         let lights = slab::lights(lit).expect(LAWFUL);
         let walk = Walk::new(Version::NonTerminating, Uniform::new(1.5).expect(LAWFUL));
