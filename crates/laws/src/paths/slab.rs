@@ -71,14 +71,18 @@ pub fn sideways<P: PhaseFunction>(optical_thickness: f64, albedo: f64, phase: &P
     let leaves = 4.0 * std::f64::consts::PI * least * (-half).exp() / (half + 2.0);
     let gain = albedo.max(1.0);
     let stays = gain * (1.0 - leaves);
-    (0..13)
-        .map(|power| {
-            let k = f64::from(1 << power);
-            let long = stays.powf(k) / (1.0 - stays);
-            let far = (k * (gain.ln() + (HALF_WIDTH / k).ln() + 1.0) - HALF_WIDTH).exp();
-            if stays < 1.0 { long + far } else { f64::INFINITY }
-        })
-        .fold(f64::INFINITY, f64::min)
+    if stays >= 1.0 {
+        return f64::INFINITY;
+    }
+    let mut best = f64::INFINITY;
+    let mut k = 1.0;
+    while k < 0.5 * HALF_WIDTH {
+        let long = stays.powf(k) / (1.0 - stays);
+        let far = (k * (gain.ln() + (HALF_WIDTH / k).ln() + 1.0) - HALF_WIDTH).exp();
+        best = best.min(long + far);
+        k *= 2.0;
+    }
+    best
 }
 
 #[cfg(test)]
