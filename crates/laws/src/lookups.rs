@@ -27,7 +27,7 @@ pub fn reference(expected: f64, law: LookupLaw) -> Reference {
     Reference { mean: expected, error: QUADRATURE * expected, moments, scores: Scores::Unbounded }
 }
 
-/// As [`reference`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
+/// As [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
 #[must_use]
 pub fn with_moments(raw: &[f64]) -> Reference {
     let moments = ClosedMoments::from_raw(raw);
