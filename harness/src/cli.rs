@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
-/// Measures, verifies and reports unbiased estimators of volumetric light transport.
+/// Measures, verifies, renders and reports unbiased estimators of volumetric light transport.
 ///
 /// Without a subcommand it writes the standard report to reports/standard.
 #[derive(Debug, Parser)]
@@ -21,6 +21,8 @@ pub(crate) enum Command {
     Report(ReportArguments),
     /// Measure one experiment, or a sweep of them, given as JSON; the result goes to standard output
     Estimate(EstimateArguments),
+    /// Render a scene, given as JSON, into images and statistics
+    Render(RenderArguments),
     /// Check all laws over all estimators, media and hard cases; exit code 1 if one fails
     Verify(VerifyArguments),
     /// List reports, profiles, media, estimators and controls
@@ -82,6 +84,29 @@ pub(crate) struct EstimateArguments {
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     pub samples: Option<u64>,
     /// Instead of the spec's seed
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `render`.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct RenderArguments {
+    /// The scene; - reads standard input
+    #[arg(value_name = "SCENE.json")]
+    pub scene: PathBuf,
+    /// Where to write, by extension: .pfm and .exr linear radiance, .png tone-mapped, .json statistics; may be repeated
+    #[arg(long, value_name = "IMAGE", required = true)]
+    pub out: Vec<PathBuf>,
+    /// An image (.pfm or .exr) to measure the error against
+    #[arg(long, value_name = "IMAGE")]
+    pub reference: Option<PathBuf>,
+    /// Instead of the scene's samples per pixel
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples_per_pixel: Option<u32>,
+    /// Instead of the scene's seed
     #[arg(long)]
     pub seed: Option<u64>,
     /// Threads [default: all cores]

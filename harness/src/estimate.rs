@@ -36,11 +36,7 @@ pub(crate) fn run(
     stdin: &mut dyn Read,
     stdout: &mut dyn Write,
 ) -> Result<i32, Failure> {
-    let name = if arguments.spec.as_os_str() == "-" {
-        "standard input".to_owned()
-    } else {
-        arguments.spec.display().to_string()
-    };
+    let name = named(&arguments.spec);
     let text = read(&arguments.spec, stdin).map_err(|failure| failure.within(&name))?;
     let overrides = Overrides { samples: arguments.samples, seed: arguments.seed };
     let request = Request::parse(&text, overrides).map_err(|failure| failure.within(&name))?;
@@ -52,7 +48,13 @@ pub(crate) fn run(
     Ok(if unsound { UNSOUND } else { DONE })
 }
 
-fn read(path: &Path, stdin: &mut dyn Read) -> Result<String, Failure> {
+/// What a spec is called in a refusal; - is standard input.
+pub(crate) fn named(path: &Path) -> String {
+    if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// The text of a spec; - is standard input.
+pub(crate) fn read(path: &Path, stdin: &mut dyn Read) -> Result<String, Failure> {
     if path.as_os_str() == "-" {
         let mut text = String::new();
         return stdin.read_to_string(&mut text).map(|_| text).map_err(Failure::refused);

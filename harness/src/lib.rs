@@ -11,9 +11,11 @@ mod environment;
 mod estimate;
 mod failure;
 mod list;
+mod render;
 mod verify;
 
 pub mod experiment;
+pub mod image;
 pub mod interrupt;
 pub mod measure;
 pub mod plan;
@@ -48,6 +50,7 @@ pub fn run(
     let environment = Environment::new(&arguments, terminal);
     let outcome = match cli.command {
         Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
+        Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
         Some(Command::List) => list::run(stdout),
         Some(Command::Report(arguments)) => report::command::run(&arguments, &environment, stderr),

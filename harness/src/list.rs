@@ -28,6 +28,23 @@ controls       none
                constant          sigma_main
                piecewise_linear  positions, sigma_main
                explorers         count
+integrators    transmittance     estimator
+               particle_tracer   version, sigma_samp, [particles], [colour], [max_collisions],
+                                 [allow_supercritical]      szirmay-kalos-2017 4.1
+               line_splitting    majorant, splits, [starts], and those of particle_tracer
+                                                            raab-2008 3.1
+               single_scattering sampling, estimator, samples_per_ray, [heuristic], [shadow], [shared_explorers]
+                                                            szirmay-kalos-2017 4.3
+sampling       attenuation, attenuation_resampled, source, scattering, source_and_scattering, attenuation_and_source,
+               attenuation_and_scattering
+phases         isotropic, rayleigh, hazy_mie
+               henyey_greenstein g
+               schlick           k
+               tabulated         cosines, values
+lights         environment       radiance
+               environment_map   file
+               point             position, power
+               directional       direction, irradiance
 ";
 
 pub(crate) fn run(stdout: &mut dyn Write) -> Result<i32, Failure> {

@@ -3,7 +3,9 @@
 use super::VoxelLattice;
 use crate::Failure;
 use crate::spec::{MediumKind, MediumSpec};
-use fairflight_media::{AnalyticCosine, Bounds, ExpressionMedium, Homogeneous, Perlin, Voxels};
+use fairflight_media::{
+    AnalyticCosine, Bounds, ExpressionMedium, FieldError, Homogeneous, LineThickness, Medium, Perlin, Voxels,
+};
 use fairflight_volumes::{Affine, VoxelGrid, read_float_grid};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
@@ -25,6 +27,29 @@ pub enum AnyMedium {
     Voxels(Arc<Voxels<VoxelLattice>>),
 }
 
+/// Something to be done with a medium of whatever type it has. The two differ in what is known of it.
+pub trait MediumJob {
+    /// What comes of it.
+    type Output;
+    /// Does it where only look-ups are to be had.
+    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output;
+    /// Does it where the optical thickness along a line has a closed form.
+    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output;
+}
+
+impl AnyMedium {
+    /// Does a job with the medium inside.
+    pub fn with<J: MediumJob>(&self, job: J) -> J::Output {
+        match self {
+            Self::Homogeneous(medium) => job.by_closed_form(&**medium),
+            Self::AnalyticCosine(medium) => job.by_closed_form(&**medium),
+            Self::Perlin(medium) => job.by_look_ups(&**medium),
+            Self::Expression(medium) => job.by_look_ups(&**medium),
+            Self::Voxels(medium) => job.by_closed_form(&**medium),
+        }
+    }
+}
+
 /// The media that were built so far: the points of a sweep share a file and its voxels.
 #[derive(Debug, Default)]
 pub struct MediumLibrary {
@@ -35,14 +60,15 @@ type VolumeKey = (PathBuf, Option<String>, u64);
 type Volume = (Arc<Voxels<VoxelLattice>>, Bounds);
 
 impl MediumLibrary {
-    /// The medium of a spec, and its bounds.
+    /// The medium of a spec, and its bounds. A refusal names `key`, where the medium stands.
     ///
     /// # Errors
     /// If a file cannot be read, or a parameter is not lawful.
-    pub fn build(&self, spec: &MediumSpec) -> Result<(AnyMedium, Bounds), Failure> {
+    pub fn build(&self, spec: &MediumSpec, key: &str) -> Result<(AnyMedium, Bounds), Failure> {
         let given = spec.bounds;
+        let in_medium = |error: FieldError| Failure::refused(format!("{key}: {error}"));
         // A medium without bounds of its own was given some: the spec saw to it.
-        let unbounded = || Failure::refused("profile.medium.bounds: this key is missing");
+        let unbounded = || Failure::refused(format!("{key}.bounds: this key is missing"));
         Ok(match &spec.kind {
             MediumKind::Homogeneous { sigma_t } => {
                 let medium = Homogeneous::new(*sigma_t).map_err(in_medium)?;
@@ -59,38 +85,35 @@ impl MediumLibrary {
             }
             MediumKind::Expression { sigma_t, majorant } => {
                 let medium = ExpressionMedium::new(sigma_t, *majorant)
-                    .map_err(|error| Failure::refused(format!("profile.medium.sigma_t: {error}")))?;
+                    .map_err(|error| Failure::refused(format!("{key}.sigma_t: {error}")))?;
                 (AnyMedium::Expression(Arc::new(medium)), given.ok_or_else(unbounded)?)
             }
             MediumKind::Vdb { file, grid, scale } => {
-                let (medium, bounds) = self.volume(file, grid.as_deref(), *scale)?;
+                let (medium, bounds) = self.volume(file, grid.as_deref(), *scale, key)?;
                 (AnyMedium::Voxels(medium), given.unwrap_or(bounds))
             }
         })
     }
 
-    fn volume(&self, file: &Path, grid: Option<&str>, scale: f64) -> Result<Volume, Failure> {
+    fn volume(&self, file: &Path, grid: Option<&str>, scale: f64, path: &str) -> Result<Volume, Failure> {
         let key = (file.to_owned(), grid.map(str::to_owned), scale.to_bits());
         let mut volumes = self.volumes.lock().expect("no thread panics while it reads a volume");
         if let Some(volume) = volumes.get(&key) {
             return Ok(volume.clone());
         }
         let in_file = |error: &dyn std::fmt::Display| {
-            Failure::refused(format!("profile.medium.file: {}: {error}", file.display()))
+            Failure::refused(format!("{path}.file: {}: {error}", file.display()))
         };
         let bytes = std::fs::read(file).map_err(|error| in_file(&error))?;
         let grid = read_float_grid(&bytes, grid).map_err(|error| in_file(&error))?;
         let bounds = grown_bounds(&grid).ok_or_else(|| in_file(&"the grid has no active voxel"))?;
         let index_from_world = glam_affine(&grid.index_from_world());
-        let medium = Voxels::new(VoxelLattice(grid), index_from_world, scale).map_err(in_medium)?;
+        let medium = Voxels::new(VoxelLattice(grid), index_from_world, scale)
+            .map_err(|error| Failure::refused(format!("{path}: {error}")))?;
         let volume = (Arc::new(medium), bounds);
         volumes.insert(key, volume.clone());
         Ok(volume)
     }
-}
-
-fn in_medium(error: impl std::fmt::Display) -> Failure {
-    Failure::refused(format!("profile.medium: {error}"))
 }
 
 /// The world box of the active voxels grown by one voxel; `None` if nothing is active.

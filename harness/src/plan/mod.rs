@@ -7,18 +7,30 @@
 mod control;
 mod estimator;
 mod field;
+mod integrator;
 mod media;
+mod phase;
 mod profile;
+mod ray_estimator;
 mod sampling;
+mod scene;
+mod single_scattering;
 mod voxel_lattice;
+mod walk;
 
 pub use control::AnyControl;
 pub use estimator::{AnyEstimator, Estimator, EstimatorJob, Lawful};
 pub use field::{Field, Knowledge, KnownField, ThicknessMethod};
-pub use media::{AnyMedium, MediumLibrary};
+pub use integrator::{IntegratorJob, IntegratorPlan, TileIntegrator};
+pub use media::{AnyMedium, MediumJob, MediumLibrary};
+pub use phase::AnyPhase;
 pub use profile::{AnyProfile, FieldJob};
+pub use ray_estimator::{RayEstimator, RayWorker, Unlawful};
 pub use sampling::AnySampling;
+pub use scene::{Radiant, ScenePlan, Spectra};
+pub use single_scattering::SingleScatteringPlan;
 pub use voxel_lattice::VoxelLattice;
+pub use walk::{SpaceSampling, WalkPlan};
 
 use crate::Failure;
 use crate::measure::MOST_COUNTED;

@@ -68,7 +68,7 @@ impl AnyProfile {
                     .map_err(|error| Failure::refused(format!("profile.sigma_t: {error}")))?,
             ),
             ProfileSpec::Ray { medium, origin, direction, length } => {
-                let (medium, bounds) = library.build(medium)?;
+                let (medium, bounds) = library.build(medium, "profile.medium")?;
                 let clip = bounds.clip(*origin, *direction, *length).map_err(|error| refuse(&error))?;
                 Self::ray(&medium, &clip.unwrap_or_else(|| Clip::empty(*origin, *direction)))?
             }

@@ -86,6 +86,10 @@ pub enum ControlSpec {
 const MOST_POINTS: u64 = 10_000_000;
 
 impl EstimatorSpec {
+    /// The names of the kinds.
+    pub const KINDS: [&str; 5] =
+        ["woodcock", "double_particle", "single_particle", "line_integral", "ray_marching"];
+
     /// Reads `estimator`.
     ///
     /// # Errors
@@ -114,9 +118,7 @@ impl EstimatorSpec {
                 offset: if object.required("jitter")?.boolean()? { Offset::Jittered } else { Offset::Fixed },
             },
             _ => {
-                return Err(kind.refuse(
-                    "must be woodcock, double_particle, single_particle, line_integral or ray_marching",
-                ));
+                return Err(kind.refuse(format!("must be {}", one_of(&Self::KINDS))));
             }
         };
         object.finish()?;
@@ -130,7 +132,16 @@ impl EstimatorSpec {
     }
 }
 
-fn read_version(node: &Node<'_>) -> Result<Version, Failure> {
+/// `a, b or c`
+pub(super) fn one_of(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => (*only).to_owned(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+pub(super) fn read_version(node: &Node<'_>) -> Result<Version, Failure> {
     match node.text()? {
         "terminating" => Ok(Version::Terminating),
         "non_terminating" => Ok(Version::NonTerminating),

@@ -55,14 +55,23 @@ impl MediumSpec {
     /// If a key is missing, unknown or of the wrong kind.
     pub fn read(node: &Node<'_>) -> Result<Self, Failure> {
         let object = node.object()?;
-        let kind = MediumKind::read(&object)?;
+        let medium = Self::take_from(&object)?;
+        object.finish()?;
+        Ok(medium)
+    }
+
+    /// Takes the keys of a medium from an object that may have more: those of a scene's medium.
+    ///
+    /// # Errors
+    /// If a key is missing or of the wrong kind.
+    pub fn take_from(object: &Object<'_>) -> Result<Self, Failure> {
+        let kind = MediumKind::read(object)?;
         let bounds = object.optional("bounds").map(|node| read_bounds(&node)).transpose()?;
         let has_own = matches!(kind, MediumKind::AnalyticCosine { .. } | MediumKind::Vdb { .. });
         if bounds.is_none() && !has_own {
             // Names the missing key.
             object.required("bounds")?;
         }
-        object.finish()?;
         Ok(Self { kind, bounds })
     }
 }

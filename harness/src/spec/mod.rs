@@ -1,4 +1,5 @@
-//! What is to be measured, as data: the experiment of `harness estimate`, and the points of every report.
+//! What is to be measured, as data: the experiment of `harness estimate`, the scene of `harness render`, and the points
+//! of every report.
 //!
 //! A spec is what was asked for, checked in itself (types, signs, lengths of lists). Whether it fits together (a
 //! majorant that is one, edges that cover the ray) is for the plan to find.
@@ -8,9 +9,15 @@ mod experiment;
 mod medium;
 mod node;
 mod profile;
+mod scene;
 
 pub use estimator::{ControlSpec, EstimatorSpec, SamplingSpec};
 pub use experiment::{Experiment, Overrides, Request, Sweep};
 pub use medium::{MediumKind, MediumSpec};
-pub use node::Node;
+pub use node::{Node, Object};
 pub use profile::ProfileSpec;
+pub use scene::{
+    Collisions, ColourSpec, IntegratorSpec, LightSpec, Particles, PhaseSpec, RayEstimatorSpec,
+    SamplingFieldSpec, SceneOverrides, SceneSpec, SingleScatteringSpec, Strategy, TracerSpec, VolumeSpec,
+    WalkSpec,
+};

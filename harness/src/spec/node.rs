@@ -57,6 +57,12 @@ impl<'a> Node<'a> {
         self.value.is_object()
     }
 
+    /// Whether this value is a list.
+    #[must_use]
+    pub fn is_list(&self) -> bool {
+        self.value.is_array()
+    }
+
     /// A finite number.
     ///
     /// # Errors
@@ -76,6 +82,17 @@ impl<'a> Node<'a> {
         match self.number() {
             Ok(number) if number >= 0.0 => Ok(number),
             _ => Err(self.refuse("must be a number of at least 0")),
+        }
+    }
+
+    /// A finite number above 0.
+    ///
+    /// # Errors
+    /// If it is none.
+    pub fn positive(&self) -> Result<f64, Failure> {
+        match self.number() {
+            Ok(number) if number > 0.0 => Ok(number),
+            _ => Err(self.refuse("must be a number above 0")),
         }
     }
 
@@ -153,6 +170,18 @@ impl<'a> Node<'a> {
             [x, y, z] => Ok(DVec3::new(x, y, z)),
             _ => Err(self.refuse("must be a list of three numbers")),
         }
+    }
+
+    /// As many whole numbers within `[least, most]`.
+    ///
+    /// # Errors
+    /// If it is no list of so many of them.
+    pub fn integers<const N: usize>(&self, least: u32, most: u32) -> Result<[u32; N], Failure> {
+        let items = self.items()?;
+        let numbers = items.iter().map(|item| item.integer(u64::from(least), u64::from(most)));
+        let numbers = numbers.map(|number| number.map(|number| number as u32));
+        let numbers: Vec<u32> = numbers.collect::<Result<_, Failure>>()?;
+        numbers.try_into().map_err(|_| self.refuse(format!("must be a list of {N} whole numbers")))
     }
 
     /// The value as it stands.

@@ -5,4 +5,6 @@ mod estimate;
 #[cfg(unix)]
 mod interrupt;
 mod refusals;
+mod render;
+mod render_refusals;
 mod report;

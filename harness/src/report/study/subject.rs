@@ -156,7 +156,7 @@ impl Subject {
     ) -> Result<Self, Failure> {
         let Names { id, title, description } = names;
         let Ranking { index, lookup_nanoseconds, walk_sampling } = ranking;
-        let (medium, bounds) = library.build(spec)?;
+        let (medium, bounds) = library.build(spec, "profile.medium")?;
         let (origin, direction) = ray(&bounds);
         let clip = bounds.clip(origin, direction, None).map_err(|error| in_subject(id, error))?;
         let clip = clip.ok_or_else(|| in_subject(id, "the studied ray misses the medium"))?;

@@ -335,7 +335,8 @@ pub(super) fn claim_counts(claims: &[Claim]) -> Vec<String> {
     let count = |verdict| claims.iter().filter(|claim| claim.verdict == verdict).count();
     let counts = [Holds, HoldsUnder, DoesNotHold, NotTestable]
         .map(|verdict| format!("{} “{}”", count(verdict), markdown::verdict(verdict)));
-    vec![format!("Verdicts on {} claims of the papers: {}.", claims.len(), listed(&counts))]
+    let plural = if claims.len() == 1 { "" } else { "s" };
+    vec![format!("Verdicts on {} claim{plural} of the papers: {}.", claims.len(), listed(&counts))]
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Small PNG files: indexed colours for line art and error maps, eight-bit grey for transmittance.
+//! Small PNG files: indexed colours for line art and error maps, eight-bit grey or RGB for pictures.
 
 use super::median_cut;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ pub(crate) const IMAGE: usize = 256;
 
 /// Encodes grey levels, row 0 on top.
 pub(crate) fn grey(pixels: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, String> {
-    encode(pixels, [width, height], None)
+    encode(pixels, [width, height], &Kind::Grey)
 }
 
 /// Encodes RGB triples, row 0 on top. The most frequent colours are kept exactly; a rarer one becomes the nearest of them.
@@ -27,11 +27,15 @@ pub(crate) fn indexed(rgb: &[u8], [width, height]: [usize; 2], colours: usize) -
     with_palette(triples, &palette, [width, height])
 }
 
-/// Encodes RGB triples of a picture, row 0 on top: exactly if they are few enough for a palette, else with the nearest colours of
-/// a palette that is made for them.
-pub(crate) fn few_colours(rgb: &[u8], size: [usize; 2]) -> Result<Vec<u8>, String> {
+/// Encodes RGB triples of a picture, row 0 on top, exactly.
+pub(crate) fn colour(rgb: &[u8], size: [usize; 2]) -> Result<Vec<u8>, String> {
+    encode(rgb, size, &Kind::Colour)
+}
+
+/// Encodes RGB triples of a picture, row 0 on top, with the nearest colours of a palette that is made for them.
+pub(crate) fn few_colours(rgb: &[u8], size: [usize; 2], colours: usize) -> Result<Vec<u8>, String> {
     let (triples, _) = rgb.as_chunks::<3>();
-    with_palette(triples, &median_cut::palette(triples, IMAGE), size)
+    with_palette(triples, &median_cut::palette(triples, colours.min(IMAGE)), size)
 }
 
 fn with_palette(triples: &[[u8; 3]], palette: &[[u8; 3]], size: [usize; 2]) -> Result<Vec<u8>, String> {
@@ -40,7 +44,7 @@ fn with_palette(triples: &[[u8; 3]], palette: &[[u8; 3]], size: [usize; 2]) -> R
         .iter()
         .map(|&colour| *index.entry(colour).or_insert_with(|| nearest(palette, colour)))
         .collect();
-    encode(&indices, size, Some(palette.as_flattened()))
+    encode(&indices, size, &Kind::Indexed(palette.as_flattened()))
 }
 
 fn nearest(palette: &[[u8; 3]], colour: [u8; 3]) -> u8 {
@@ -49,21 +53,29 @@ fn nearest(palette: &[[u8; 3]], colour: [u8; 3]) -> u8 {
     (0..=u8::MAX).zip(palette).min_by_key(|&(_, &known)| distance(known)).map_or(0, |(i, _)| i)
 }
 
-fn encode(pixels: &[u8], [width, height]: [usize; 2], palette: Option<&[u8]>) -> Result<Vec<u8>, String> {
+/// What the bytes of an image are.
+enum Kind<'a> {
+    Grey,
+    Colour,
+    Indexed(&'a [u8]),
+}
+
+fn encode(pixels: &[u8], [width, height]: [usize; 2], kind: &Kind<'_>) -> Result<Vec<u8>, String> {
     let side = |length: usize| u32::try_from(length).map_err(|error| error.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, side(width)?, side(height)?);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Best);
-    match palette {
-        Some(palette) => {
+    match kind {
+        Kind::Indexed(palette) => {
             encoder.set_color(png::ColorType::Indexed);
-            encoder.set_palette(palette);
+            encoder.set_palette(*palette);
             // Neighbouring indices are unrelated numbers: prediction only hurts.
             encoder.set_filter(png::FilterType::NoFilter);
         }
-        None => {
-            encoder.set_color(png::ColorType::Grayscale);
+        Kind::Grey | Kind::Colour => {
+            let grey = matches!(kind, Kind::Grey);
+            encoder.set_color(if grey { png::ColorType::Grayscale } else { png::ColorType::Rgb });
             encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
         }
     }

@@ -71,31 +71,53 @@ pub(super) fn hung(gallery: &Gallery) -> Result<Hung<'_>, String> {
     Ok(Hung { gallery, rows: rows.collect::<Result<_, String>>()? })
 }
 
+/// What a small picture may take however noisy it is: palette and headers are a good part of it.
+const LEAST: f64 = 2048.0;
+/// Bytes per pixel, beyond that, that a picture may take with all its levels. Noise does not compress, and it hides that levels are missing; a
+/// smooth picture keeps them all.
+const BUDGET: f64 = 0.75;
+/// Levels per channel, or colours, of a picture that would take more.
+const FEW: u8 = 63;
+
 fn exhibit(picture: &Picture) -> Result<Exhibit<'_>, String> {
-    let (png, remark) = match &picture.pixels {
+    let size = picture.resolution;
+    let fits = |png: &[u8]| png.len() as f64 <= LEAST + BUDGET * (size[0] * size[1]) as f64;
+    let (png, full, remark) = match &picture.pixels {
         Pixels::Radiance { values, exposure } => {
             let encode = |x: f64| colour_map::grey(exposure * x);
-            let remark = clipped(values, *exposure);
-            let png = if values.iter().all(|[r, g, b]| r == g && g == b) {
+            let (full, few) = if values.iter().all(|[r, g, b]| r == g && g == b) {
                 let levels: Vec<u8> = values.iter().map(|rgb| encode(rgb[0])).collect();
-                png::grey(&levels, picture.resolution)?
+                let coarse: Vec<u8> = levels.iter().flat_map(|&level| [coarse(level); 3]).collect();
+                (png::grey(&levels, size)?, png::indexed(&coarse, size, png::IMAGE)?)
             } else {
                 let colours: Vec<u8> = values.iter().flat_map(|rgb| rgb.map(encode)).collect();
-                png::few_colours(&colours, picture.resolution)?
+                (png::colour(&colours, size)?, png::few_colours(&colours, size, usize::from(FEW))?)
             };
-            (png, remark)
+            let all = fits(&full);
+            (if all { full } else { few }, all, clipped(values, *exposure))
         }
         Pixels::Signed { values, scale } => {
-            let colours: Vec<u8> =
-                values.iter().map(|x| colour_map::diverging(x / scale)).flat_map(<[u8; 3]>::from).collect();
+            let coloured = |step: &dyn Fn(f64) -> f64| {
+                let colours = values.iter().map(|x| colour_map::diverging(step(x / scale)));
+                png::indexed(&colours.flat_map(<[u8; 3]>::from).collect::<Vec<_>>(), size, png::IMAGE)
+            };
+            let full = coloured(&|x| x)?;
+            let half = f64::from(FEW / 2);
+            let all = fits(&full);
+            let png = if all { full } else { coloured(&|x| (x * half).round() / half)? };
             let beyond = values.iter().filter(|x| x.abs() > *scale).count();
-            (
-                png::indexed(&colours, picture.resolution, png::IMAGE)?,
-                told(beyond, values.len(), "beyond the scale"),
-            )
+            (png, all, told(beyond, values.len(), "beyond the scale"))
         }
     };
-    Ok(Exhibit { picture, png, remark })
+    let levels = if full { String::new() } else { format!("shown with {FEW} levels") };
+    Ok(Exhibit { picture, png, remark: joined([remark, levels]) })
+}
+
+/// The nearest of few levels.
+fn coarse(level: u8) -> u8 {
+    let few = f64::from(FEW);
+    // At most 255.
+    ((f64::from(level) * few / 255.0).round() * 255.0 / few).round() as u8
 }
 
 /// What was clamped, in words.
@@ -104,6 +126,10 @@ fn clipped(values: &[[f64; 3]], exposure: f64) -> String {
     let below = values.iter().filter(|rgb| rgb.iter().any(|x| *x < 0.0)).count();
     let parts =
         [told(above, values.len(), "clipped to 1"), told(below, values.len(), "negative, clipped to 0")];
+    joined(parts)
+}
+
+fn joined(parts: [String; 2]) -> String {
     parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
 }
 

@@ -5,7 +5,7 @@ use super::super::page::{self, FigureView, PictureView};
 use super::chart::Finished;
 use super::gallery::{Exhibit, Hung};
 use super::table::{heading, is_number, words};
-use crate::report::document::{Document, Picture, Pixels, Section, Table};
+use crate::report::document::{Cell, Document, Picture, Pixels, Section, Table};
 use minijinja::context;
 use minijinja::value::Serde;
 use serde::Serialize;
@@ -120,9 +120,12 @@ fn section<'a>(part: &'a Section, charts: &[Finished<'a>], galleries: &'a [Hung<
 }
 
 fn table(table: &Table) -> TableView<'_> {
-    let cell = |cell| CellView { text: words(cell), right: is_number(cell) };
-    // A heading stands where its numbers stand.
+    // A heading and an empty cell stand where the numbers of their column stand.
     let right = |k: usize| table.rows.iter().any(|row| row.get(k).is_some_and(is_number));
+    let cell = |(k, cell): (usize, &Cell)| CellView {
+        text: words(cell),
+        right: is_number(cell) || (*cell == Cell::Empty && right(k)),
+    };
     TableView {
         id: &table.id,
         title: &table.title,
@@ -133,7 +136,7 @@ fn table(table: &Table) -> TableView<'_> {
             .enumerate()
             .map(|(k, column)| HeadView { text: heading(column), right: right(k) })
             .collect(),
-        rows: table.rows.iter().map(|row| row.iter().map(cell).collect()).collect(),
+        rows: table.rows.iter().map(|row| row.iter().enumerate().map(cell).collect()).collect(),
     }
 }
 

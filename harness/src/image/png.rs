@@ -1,0 +1,87 @@
+//! Tone-mapped PNG: sRGB of min(1, max(0, exposure · radiance)), eight bits. How it was mapped stands in the file.
+
+use super::Image;
+
+/// The factor in front of radiance before it is displayed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exposure(f64);
+
+/// Of the pixels, this part may be brighter than white.
+const WHITE: f64 = 0.995;
+
+impl Exposure {
+    /// The power of two that shows the 99.5th percentile of luminance at white or less than one stop below: the same for
+    /// all images of a scene but for noise at a boundary. It is 1 for an image without light.
+    #[must_use]
+    pub fn of(image: &Image) -> Self {
+        let mut luminance: Vec<f64> = image.pixels.iter().map(luminance).collect();
+        let rank = ((luminance.len() as f64 * WHITE) as usize).min(luminance.len() - 1);
+        let (_, &mut white, _) = luminance.select_nth_unstable_by(rank, f64::total_cmp);
+        if white > 0.0 && white.is_finite() { Self((-white.log2().ceil()).exp2()) } else { Self(1.0) }
+    }
+}
+
+impl std::fmt::Display for Exposure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "sRGB of {} times linear radiance, clamped to [0, 1]", self.0)
+    }
+}
+
+/// Luminance of linear Rec. 709 primaries.
+fn luminance(&[r, g, b]: &[f32; 3]) -> f64 {
+    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+}
+
+/// IEC 61966-2-1, of a number in \[0, 1\].
+fn srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+pub(super) fn encode(image: &Image, exposure: Exposure) -> Result<Vec<u8>, String> {
+    let byte = |value: &f32| (255.0 * srgb((exposure.0 * f64::from(*value)).clamp(0.0, 1.0))).round() as u8;
+    let data: Vec<u8> = image.pixels.as_flattened().iter().map(byte).collect();
+    write(image, &data, &exposure.to_string()).map_err(|error| error.to_string())
+}
+
+fn write(image: &Image, data: &[u8], comment: &str) -> Result<Vec<u8>, ::png::EncodingError> {
+    let side = |length: usize| u32::try_from(length).expect("an image has at most 2^28 pixels");
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, side(image.width), side(image.height));
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_source_srgb(::png::SrgbRenderingIntent::RelativeColorimetric);
+    encoder.set_adaptive_filter(::png::AdaptiveFilterType::Adaptive);
+    encoder.add_text_chunk("Comment".to_owned(), comment.to_owned())?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(data)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_says_how_it_was_mapped() {
+        let image = Image::new(2, 2, vec![[0.0; 3], [4.0, 2.0, -1.0], [4.0; 3], [4.0; 3]]);
+        let exposure = Exposure::of(&image);
+        assert_eq!(exposure, Exposure(0.25));
+        let bytes = encode(&image, exposure).unwrap();
+        let mut reader = ::png::Decoder::new(bytes.as_slice()).read_info().unwrap();
+        let mut data = vec![0; reader.output_buffer_size()];
+        reader.next_frame(&mut data).unwrap();
+        // 0.5 in sRGB is 187.5 of 255 and a little.
+        assert_eq!(data, [0, 0, 0, 255, 188, 0, 255, 255, 255, 255, 255, 255]);
+        let text = &reader.info().uncompressed_latin1_text[0];
+        assert_eq!(text.keyword, "Comment");
+        assert_eq!(text.text, "sRGB of 0.25 times linear radiance, clamped to [0, 1]");
+    }
+
+    #[test]
+    fn exposure_is_a_power_of_two_and_total() {
+        let of = |value: f32| Exposure::of(&Image::new(1, 1, vec![[value; 3]])).0;
+        assert_eq!([of(0.0), of(-3.0), of(f32::MIN_POSITIVE)], [1.0, 1.0, 2_f64.powi(126)]);
+        assert_eq!([of(0.3), of(0.6), of(2.1)], [2.0, 1.0, 0.25]);
+    }
+}

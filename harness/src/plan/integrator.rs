@@ -1,0 +1,244 @@
+//! An integrator of any kind, instantiated over the medium that it meets.
+
+use super::single_scattering::SingleScatteringPlan;
+use super::{AnyMedium, RayEstimator, SpaceSampling, Unlawful, WalkPlan};
+use crate::Failure;
+use crate::spec::{EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SingleScatteringSpec};
+use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
+use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
+use fairflight_scene::{Lights, Spectrum, Volume};
+use fairflight_transmittance::{LineIntegral, Regular, Starts};
+use std::cell::Cell;
+
+/// An integrator whose parameters are checked.
+#[derive(Debug)]
+pub enum IntegratorPlan {
+    /// The background seen through the medium.
+    Transmittance(RayEstimator),
+    /// The same in closed form.
+    RegularTransmittance,
+    /// Importons.
+    ParticleTracer(WalkPlan),
+    /// Photons, which are not drawn pixel by pixel; here is the background, attenuated by ratio tracking at the same rate.
+    PhotonTracer(WalkPlan),
+    /// raab-2008 section 3.1.
+    LineSplitting {
+        /// How each flight goes on.
+        walk: WalkPlan,
+        /// The flights.
+        line: LineIntegral,
+        /// Of their first steps.
+        starts: Starts,
+        /// The claimed majorant.
+        majorant: f64,
+    },
+    /// One scattering event per light.
+    SingleScattering(SingleScatteringPlan),
+}
+
+/// An integrator, and what it has to say at the end of a tile.
+pub trait TileIntegrator<C>: Integrator<C> {
+    /// The number of walks that were cut: each is a bias.
+    fn truncated(&self) -> u64 {
+        0
+    }
+}
+
+impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C>
+    for ParticleTracer<'_, M, P, C, SpaceSampling<'_>>
+{
+    fn truncated(&self) -> u64 {
+        Self::truncated(self)
+    }
+}
+impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C>
+    for LineSplitting<'_, M, P, C, SpaceSampling<'_>>
+{
+    fn truncated(&self) -> u64 {
+        Self::truncated(self)
+    }
+}
+impl<M, P, C, T> TileIntegrator<C> for Attenuation<'_, M, P, C, T> where Self: Integrator<C> {}
+
+/// Something to be done with an integrator.
+pub trait IntegratorJob<C> {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn run<I: TileIntegrator<C>>(self, integrator: I) -> Self::Output;
+}
+
+impl IntegratorPlan {
+    /// The integrator of a spec in a medium.
+    ///
+    /// # Errors
+    /// If a parameter is not lawful.
+    pub fn build(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+        match spec {
+            IntegratorSpec::Transmittance { estimator: RayEstimatorSpec::Regular } => {
+                Ok(Self::RegularTransmittance)
+            }
+            IntegratorSpec::Transmittance { estimator: RayEstimatorSpec::Sampled(estimator) } => {
+                RayEstimator::build(estimator, "integrator.estimator").map(Self::Transmittance)
+            }
+            IntegratorSpec::ParticleTracer(tracer) => {
+                let walk = WalkPlan::build(&tracer.walk, medium, bounds)?;
+                Ok(match tracer.particles {
+                    Particles::Importons => Self::ParticleTracer(walk),
+                    Particles::Photons => Self::PhotonTracer(walk),
+                })
+            }
+            IntegratorSpec::LineSplitting { walk, majorant, splits, starts } => Ok(Self::LineSplitting {
+                walk: WalkPlan::build(walk, medium, bounds)?,
+                line: LineIntegral::new(*splits)
+                    .map_err(|error| Failure::refused(format!("integrator.splits: {error}")))?,
+                starts: *starts,
+                majorant: *majorant,
+            }),
+            IntegratorSpec::SingleScattering(spec) => {
+                SingleScatteringPlan::build(spec).map(Self::SingleScattering)
+            }
+        }
+    }
+
+    /// The walks of an integrator that has some.
+    #[must_use]
+    pub fn walk(&self) -> Option<&WalkPlan> {
+        match self {
+            Self::ParticleTracer(walk) | Self::PhotonTracer(walk) | Self::LineSplitting { walk, .. } => {
+                Some(walk)
+            }
+            Self::Transmittance(_) | Self::RegularTransmittance | Self::SingleScattering(_) => None,
+        }
+    }
+
+    /// Does a job with the integrator inside, on a medium of which only look-ups are to be had. The first look-up that an
+    /// estimator is not defined for is left in `unlawful`.
+    ///
+    /// # Errors
+    /// If the integrator needs a closed form, or does not fit the lights.
+    pub fn by_look_ups<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        match self {
+            Self::Transmittance(estimator) => {
+                Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
+            }
+            Self::ParticleTracer(walk) => Ok(job.run(ParticleTracer::new(volume, lights, walk.walk()))),
+            Self::PhotonTracer(walk) => {
+                Ok(job.run(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling()))))
+            }
+            Self::LineSplitting { walk, line, starts, majorant } => {
+                let asked = (*line, *starts, *majorant);
+                Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
+            }
+            Self::SingleScattering(plan) => plan.by_look_ups(volume, lights, unlawful, job),
+            Self::RegularTransmittance => Err(needs_closed_form("estimator.kind: regular")),
+        }
+    }
+
+    /// The same on a medium whose optical thickness has a closed form.
+    ///
+    /// # Errors
+    /// If the integrator does not fit the lights.
+    pub fn by_closed_form<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: LineThickness,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        match self {
+            Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, lights, Regular))),
+            Self::SingleScattering(plan) => plan.by_closed_form(volume, lights, unlawful, job),
+            Self::Transmittance(_)
+            | Self::ParticleTracer(_)
+            | Self::PhotonTracer(_)
+            | Self::LineSplitting { .. } => self.by_look_ups(volume, lights, unlawful, job),
+        }
+    }
+
+    /// Whether walks are defined where σ_t lies in this range; the estimators of transmittance watch their own look-ups.
+    ///
+    /// # Errors
+    /// If they are not.
+    pub fn admits(&self, (lowest, highest): (f64, f64), albedo: f64) -> Result<(), Failure> {
+        match self {
+            Self::ParticleTracer(walk) | Self::PhotonTracer(walk) => walk.admits((lowest, highest), albedo),
+            Self::LineSplitting { walk, majorant, .. } => {
+                admits_majorant("integrator.majorant", *majorant, (lowest, highest))?;
+                walk.admits((lowest, highest), albedo)
+            }
+            Self::SingleScattering(plan) => plan.admits((lowest, highest)),
+            Self::Transmittance(_) | Self::RegularTransmittance => Ok(()),
+        }
+    }
+
+    /// Why a look-up was not lawful for an estimator of transmittance.
+    #[must_use]
+    pub fn explain(&self, Unlawful { point, sigma_t }: Unlawful) -> Failure {
+        let at = format!("sigma_t = {sigma_t} at [{}, {}, {}]", point.x, point.y, point.z);
+        Failure::refused(match self {
+            Self::Transmittance(
+                RayEstimator::Woodcock { majorant } | RayEstimator::LineIntegral { majorant, .. },
+            ) => format!("integrator.estimator.majorant: {majorant} is none, since {at}"),
+            Self::SingleScattering(_) => format!("integrator.shadow (or estimator): not defined for {at}"),
+            _ => format!("integrator.estimator: not defined for {at}"),
+        })
+    }
+}
+
+impl IntegratorSpec {
+    /// What is biased by design, if anything is.
+    #[must_use]
+    pub fn biased_baseline(&self) -> Option<&'static str> {
+        let is_biased = |estimator: &RayEstimatorSpec| matches!(estimator, RayEstimatorSpec::Sampled(spec) if EstimatorSpec::is_biased_baseline(spec));
+        let biased = match self {
+            Self::Transmittance { estimator } => is_biased(estimator),
+            Self::SingleScattering(SingleScatteringSpec { estimator, shadow, .. }) => {
+                is_biased(estimator) || shadow.as_ref().is_some_and(is_biased)
+            }
+            Self::ParticleTracer(_) | Self::LineSplitting { .. } => false,
+        };
+        biased.then_some("ray_marching is a biased baseline")
+    }
+}
+
+pub(super) fn needs_closed_form(what: &str) -> Failure {
+    Failure::refused(format!(
+        "integrator.{what} needs a medium whose optical thickness has a closed form: homogeneous, analytic_cosine or vdb"
+    ))
+}
+
+/// Whether a claimed majorant is one.
+pub(super) fn admits_majorant(
+    key: &str,
+    majorant: f64,
+    (lowest, highest): (f64, f64),
+) -> Result<(), Failure> {
+    if lowest < 0.0 {
+        return Err(Failure::refused(format!("{key}: needs sigma_t of at least 0, but {lowest} was met")));
+    }
+    if highest > majorant {
+        return Err(Failure::refused(format!(
+            "{key}: {majorant} is none, since sigma_t = {highest} was met"
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! A phase function of any kind.
+
+use crate::Failure;
+use crate::spec::PhaseSpec;
+use fairflight_media::PhaseFunction;
+use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh, Schlick, Tabulated};
+
+/// A phase function of any kind. It is asked once per scattering event, far less often than the medium.
+#[derive(Clone, Debug)]
+pub enum AnyPhase {
+    /// The same in all directions.
+    Isotropic(Isotropic),
+    /// Particles much smaller than the wavelength.
+    Rayleigh(Rayleigh),
+    /// One parameter, the mean cosine.
+    HenyeyGreenstein(HenyeyGreenstein),
+    /// Its rational approximation.
+    Schlick(Schlick),
+    /// Linear between nodes.
+    Tabulated(Tabulated),
+}
+
+/// Nodes of the hazy atmosphere: right to 1e-4 of the peak.
+const HAZY_NODES: usize = 257;
+
+impl AnyPhase {
+    /// The phase function of a spec.
+    ///
+    /// # Errors
+    /// If a parameter is not lawful.
+    pub fn build(spec: &PhaseSpec) -> Result<Self, Failure> {
+        let phase = match spec {
+            PhaseSpec::Isotropic => Ok(Self::Isotropic(Isotropic)),
+            PhaseSpec::Rayleigh => Ok(Self::Rayleigh(Rayleigh)),
+            PhaseSpec::HenyeyGreenstein { g } => HenyeyGreenstein::new(*g).map(Self::HenyeyGreenstein),
+            PhaseSpec::Schlick { k } => Schlick::new(*k).map(Self::Schlick),
+            PhaseSpec::Tabulated { cosines, values } => {
+                Tabulated::new(cosines.clone(), values.clone()).map(Self::Tabulated)
+            }
+            PhaseSpec::HazyMie => Tabulated::hazy_mie(HAZY_NODES).map(Self::Tabulated),
+        };
+        phase.map_err(|error| Failure::refused(format!("medium.phase: {error}")))
+    }
+}
+
+impl PhaseFunction for AnyPhase {
+    #[inline]
+    fn eval(&self, cosine: f64) -> f64 {
+        match self {
+            Self::Isotropic(phase) => phase.eval(cosine),
+            Self::Rayleigh(phase) => phase.eval(cosine),
+            Self::HenyeyGreenstein(phase) => phase.eval(cosine),
+            Self::Schlick(phase) => phase.eval(cosine),
+            Self::Tabulated(phase) => phase.eval(cosine),
+        }
+    }
+
+    #[inline]
+    fn sample_cosine(&self, u: f64) -> f64 {
+        match self {
+            Self::Isotropic(phase) => phase.sample_cosine(u),
+            Self::Rayleigh(phase) => phase.sample_cosine(u),
+            Self::HenyeyGreenstein(phase) => phase.sample_cosine(u),
+            Self::Schlick(phase) => phase.sample_cosine(u),
+            Self::Tabulated(phase) => phase.sample_cosine(u),
+        }
+    }
+
+    fn mean_cosine(&self) -> f64 {
+        match self {
+            Self::Isotropic(phase) => phase.mean_cosine(),
+            Self::Rayleigh(phase) => phase.mean_cosine(),
+            Self::HenyeyGreenstein(phase) => phase.mean_cosine(),
+            Self::Schlick(phase) => phase.mean_cosine(),
+            Self::Tabulated(phase) => phase.mean_cosine(),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! A scene whose parts fit together.
+
+use super::{AnyMedium, AnyPhase, IntegratorPlan, MediumLibrary};
+use crate::Failure;
+use crate::image::Image;
+use crate::spec::{Collisions, LightSpec, SceneSpec};
+use fairflight_media::{Bounds, Homogeneous};
+use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, SceneError, Source, Spectrum};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A scene that can be rendered.
+#[derive(Debug)]
+pub struct ScenePlan {
+    /// Who looks.
+    pub camera: Camera,
+    /// What is looked through.
+    pub medium: AnyMedium,
+    /// Where it is.
+    pub bounds: Bounds,
+    /// Whereto it scatters.
+    pub phase: AnyPhase,
+    /// Albedo and lights, in as many channels as they need.
+    pub spectra: Spectra,
+    /// What estimates a pixel.
+    pub integrator: IntegratorPlan,
+    /// Estimates per pixel.
+    pub samples_per_pixel: u32,
+    /// The seed of all variates.
+    pub seed: u64,
+}
+
+/// A gray scene carries one channel.
+#[derive(Debug)]
+pub enum Spectra {
+    /// One channel.
+    Gray(Radiant<f64>),
+    /// Red, green and blue.
+    Colour(Radiant<DVec3>),
+    /// Red, green and blue, each by itself.
+    Separate(Box<[Radiant<f64>; 3]>),
+}
+
+/// What has a colour.
+#[derive(Debug)]
+pub struct Radiant<C> {
+    /// σ_s/σ_t.
+    pub albedo: C,
+    /// What shines.
+    pub lights: Lights<C>,
+}
+
+impl ScenePlan {
+    /// Builds the parts of a scene; reads the files that it names.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a parameter is not lawful.
+    pub fn of(spec: &SceneSpec, library: &MediumLibrary) -> Result<Self, Failure> {
+        let (medium, bounds) = match &spec.medium {
+            Some(volume) => library.build(&volume.medium, "medium")?,
+            None => nothing()?,
+        };
+        let phase = spec
+            .medium
+            .as_ref()
+            .map_or(Ok(AnyPhase::Isotropic(fairflight_media::phase::Isotropic)), |volume| {
+                AnyPhase::build(&volume.phase)
+            })?;
+        let maps = read_maps(&spec.lights)?;
+        let gray = spec.is_gray() && maps.iter().flatten().all(is_gray);
+        let separate = spec.integrator.walk().is_some_and(|walk| walk.colour == Collisions::Separate);
+        let channel = |k: usize| Radiant::build(spec, &maps, move |rgb: [f64; 3]| rgb[k]);
+        let spectra = if gray {
+            Spectra::Gray(channel(0)?)
+        } else if separate {
+            Spectra::Separate(Box::new([channel(0)?, channel(1)?, channel(2)?]))
+        } else {
+            Spectra::Colour(Radiant::build(spec, &maps, DVec3::from_array)?)
+        };
+        let integrator = IntegratorPlan::build(&spec.integrator, &medium, &bounds)?;
+        Ok(Self {
+            camera: spec.camera,
+            medium,
+            bounds,
+            phase,
+            spectra,
+            integrator,
+            samples_per_pixel: spec.samples_per_pixel,
+            seed: spec.seed,
+        })
+    }
+}
+
+/// The medium of a scene without one: none, in a point.
+fn nothing() -> Result<(AnyMedium, Bounds), Failure> {
+    let medium = Homogeneous::new(0.0).map_err(Failure::refused)?;
+    let bounds = Bounds::sphere(DVec3::ZERO, 0.0).map_err(Failure::refused)?;
+    Ok((AnyMedium::Homogeneous(Arc::new(medium)), bounds))
+}
+
+/// The picture of each light that is one.
+fn read_maps(lights: &[LightSpec]) -> Result<Vec<Option<Image>>, Failure> {
+    let read = |(i, light): (usize, &LightSpec)| match light {
+        LightSpec::EnvironmentMap { file } => {
+            Image::read(file).map(Some).map_err(|failure| failure.within(format!("lights.{i}.file")))
+        }
+        _ => Ok(None),
+    };
+    lights.iter().enumerate().map(read).collect()
+}
+
+fn is_gray(map: &Image) -> bool {
+    map.pixels().iter().all(|[r, g, b]| r == g && g == b)
+}
+
+impl<C: Spectrum> Radiant<C> {
+    /// In the channels that `of` takes of red, green and blue.
+    fn build(spec: &SceneSpec, maps: &[Option<Image>], of: impl Fn([f64; 3]) -> C) -> Result<Self, Failure> {
+        let albedo = spec.medium.as_ref().map_or(C::ZERO, |volume| of(volume.albedo.rgb()));
+        let mut lights = Lights { background: Background::dark(), sources: Vec::new() };
+        for (i, (light, map)) in spec.lights.iter().zip(maps).enumerate() {
+            let refuse = |error: SceneError| Failure::refused(format!("lights.{i}: {error}"));
+            match (light, map) {
+                (LightSpec::Environment { radiance }, _) => {
+                    lights.background.constant += of(radiance.rgb());
+                }
+                (LightSpec::EnvironmentMap { file }, Some(map)) => {
+                    let pixels = map.pixels().iter().map(|pixel| of(pixel.map(f64::from)));
+                    let map = EnvironmentMap::new(map.width(), map.height(), pixels.collect());
+                    let in_file = |error: SceneError| {
+                        Failure::refused(format!("lights.{i}.file: {}: {error}", file.display()))
+                    };
+                    lights.background.maps.push(map.map_err(in_file)?);
+                }
+                (LightSpec::EnvironmentMap { .. }, None) => {}
+                (LightSpec::Point { position, power }, _) => {
+                    let light = Source::point(*position, of(power.rgb()));
+                    lights.sources.push(light.map_err(refuse)?);
+                }
+                (LightSpec::Directional { direction, irradiance }, _) => {
+                    let light = Source::directional(*direction, of(irradiance.rgb()));
+                    lights.sources.push(light.map_err(refuse)?);
+                }
+            }
+        }
+        Ok(Self { albedo, lights })
+    }
+}

@@ -1,0 +1,330 @@
+//! Single scattering with an estimator of any kind that gives transmittance at every distance.
+
+use super::integrator::{admits_majorant, needs_closed_form};
+use super::{IntegratorJob, RayEstimator, RayWorker, TileIntegrator, Unlawful};
+use crate::Failure;
+use crate::spec::{
+    ControlSpec, EstimatorSpec, RayEstimatorSpec, SamplingSpec, SingleScatteringSpec, Strategy,
+};
+use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
+use fairflight_media::{LineThickness, Medium, PhaseFunction, Ray};
+use fairflight_paths::single_scattering::{
+    Heuristic, LineSampled, Marching, Primary, Sampling, SamplingError, SharedExplorers, SingleScattering,
+    Technique, Tracked,
+};
+use fairflight_paths::{Integrator, RayTransmittance};
+use fairflight_scene::{Lights, Spectrum, Volume};
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{LineIntegral, Offset, RayMarching, Regular, Starts};
+use std::cell::Cell;
+
+/// Single scattering whose parameters are checked.
+#[derive(Debug)]
+pub struct SingleScatteringPlan {
+    sampling: Sampling,
+    samples: u32,
+    primary: PrimaryPlan,
+    shadow: Shadow,
+    /// Explorers of the scattering-driven technique, and of the control where there is one.
+    explorers: usize,
+    /// Rays that share them.
+    shared: u32,
+}
+
+/// Transmittance of the camera ray.
+#[derive(Clone, Copy, Debug)]
+enum PrimaryPlan {
+    Regular,
+    Double { sigma_samp: f64, control: bool },
+    Single { model: SingleParticle, sigma_samp: f64, control: bool },
+    Line { majorant: f64, line: LineIntegral },
+    Marching { steps: u32, offset: Offset, shadow: RayMarching },
+}
+
+/// Transmittance of shadow rays.
+#[derive(Debug)]
+enum Shadow {
+    Regular,
+    Sampled(RayEstimator),
+}
+
+/// Explorers of the scattering-driven technique where the estimator has none: a look-up each per ray.
+const EXPLORERS: usize = 16;
+
+impl SingleScatteringPlan {
+    /// Single scattering of a spec.
+    ///
+    /// # Errors
+    /// If the estimator does not give transmittance at every distance, or a parameter is not lawful.
+    pub(super) fn build(spec: &SingleScatteringSpec) -> Result<Self, Failure> {
+        let (shadow, key) = match &spec.shadow {
+            Some(shadow) => (shadow, "integrator.shadow"),
+            None => (&spec.estimator, "integrator.estimator"),
+        };
+        let count = explorers_of(&spec.estimator)?;
+        Ok(Self {
+            sampling: sampling(spec.sampling, spec.heuristic),
+            samples: spec.samples_per_ray,
+            primary: PrimaryPlan::build(spec, count.is_some())?,
+            shadow: match shadow {
+                RayEstimatorSpec::Regular => Shadow::Regular,
+                RayEstimatorSpec::Sampled(estimator) => Shadow::Sampled(RayEstimator::build(estimator, key)?),
+            },
+            explorers: count.unwrap_or(EXPLORERS),
+            shared: spec.shared_explorers,
+        })
+    }
+
+    /// Whether the walk of the camera ray is defined where σ_t has this value.
+    pub(super) fn admits(&self, range: (f64, f64)) -> Result<(), Failure> {
+        if let PrimaryPlan::Line { majorant, .. } = self.primary {
+            return admits_majorant("integrator.estimator.majorant", majorant, range);
+        }
+        [range.0, range.1].into_iter().try_for_each(|sigma_t| self.admits_value(sigma_t))
+    }
+
+    fn admits_value(&self, sigma_t: f64) -> Result<(), Failure> {
+        match self.primary {
+            // With a control only versions that are defined everywhere are accepted.
+            PrimaryPlan::Single { model, sigma_samp, control: false }
+                if !model.admits(sigma_t / sigma_samp) =>
+            {
+                Err(Failure::refused(format!(
+                    "integrator.estimator.version: terminating needs 0 <= r <= 2/(1 + albedo), but r = \
+                     sigma_t/sigma_samp = {} where sigma_t = {sigma_t}",
+                    sigma_t / sigma_samp
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn by_look_ups<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        let Shadow::Sampled(shadow) = &self.shadow else {
+            return Err(needs_closed_form("shadow (or estimator): regular"));
+        };
+        self.tracked(volume, lights, shadow.worker(unlawful), job)
+    }
+
+    pub(super) fn by_closed_form<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: LineThickness,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        let shadow = match &self.shadow {
+            Shadow::Regular => ShadowWorker::Regular(Regular),
+            Shadow::Sampled(shadow) => ShadowWorker::Sampled(shadow.worker(unlawful)),
+        };
+        match self.primary {
+            PrimaryPlan::Regular => self.with(volume, lights, Regular, shadow, job),
+            _ => self.tracked(volume, lights, shadow, job),
+        }
+    }
+
+    /// What needs look-ups only, whatever the shadow rays do.
+    fn tracked<'s, M, P, C, T, J>(
+        &self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        shadow: T,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        T: RayTransmittance<M>,
+        J: IntegratorJob<C>,
+    {
+        let refuse = |error| Failure::refused(format!("integrator.estimator.sigma_samp: {error}"));
+        let explorers = |wanted: bool| wanted.then(|| self.explorers()).transpose();
+        match self.primary {
+            PrimaryPlan::Regular => Err(needs_closed_form("estimator.kind: regular")),
+            PrimaryPlan::Double { sigma_samp, control } => {
+                let model = DoubleParticle { albedo: Albedo::default() };
+                let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
+                self.with(volume, lights, walk, shadow, job)
+            }
+            PrimaryPlan::Single { model, sigma_samp, control } => {
+                let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
+                self.with(volume, lights, walk, shadow, job)
+            }
+            PrimaryPlan::Line { majorant, line } => {
+                Ok(job.run(LineSampled::new(volume, lights, (line, Starts::Equidistant, majorant), shadow)))
+            }
+            PrimaryPlan::Marching { steps, offset, shadow } => {
+                Ok(job.run(Marching::new(volume, lights, (steps, offset), shadow)))
+            }
+        }
+    }
+
+    fn with<'s, M, P, C, W, T, J>(
+        &self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        walk: W,
+        shadow: T,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        W: Primary<M>,
+        T: RayTransmittance<M>,
+        J: IntegratorJob<C>,
+    {
+        let asked = (self.sampling, self.samples);
+        SingleScattering::new(volume, lights, asked, walk, shadow, self.explorers()?)
+            .map(|integrator| job.run(integrator))
+            .map_err(|error| {
+                let key = if error == SamplingError::NoSamples { "samples_per_ray" } else { "sampling" };
+                Failure::refused(format!("integrator.{key}: {error}"))
+            })
+    }
+
+    fn explorers(&self) -> Result<SharedExplorers, Failure> {
+        SharedExplorers::new(self.explorers, self.shared)
+            .map_err(|error| Failure::refused(format!("integrator.estimator.control: {error}")))
+    }
+}
+
+impl PrimaryPlan {
+    fn build(spec: &SingleScatteringSpec, control: bool) -> Result<Self, Failure> {
+        let rate = |sampling: &SamplingSpec| match *sampling {
+            SamplingSpec::Constant(sigma_samp) => Ok(sigma_samp),
+            SamplingSpec::PiecewiseConstant { .. } => {
+                Err(Failure::refused("integrator.estimator.sigma_samp: must be a number"))
+            }
+        };
+        let estimator = match &spec.estimator {
+            RayEstimatorSpec::Regular => return Ok(Self::Regular),
+            RayEstimatorSpec::Sampled(estimator) => estimator,
+        };
+        match estimator {
+            EstimatorSpec::DoubleParticle { sampling, .. } => {
+                Ok(Self::Double { sigma_samp: rate(sampling)?, control })
+            }
+            EstimatorSpec::SingleParticle { version, albedo, sampling, .. } => {
+                if control && *version == Version::Terminating {
+                    return Err(Failure::refused(
+                        "integrator.estimator.version: terminating is not defined where the control exceeds the \
+                         extinction; with explorers non_terminating or adaptive is allowed",
+                    ));
+                }
+                let model = SingleParticle { version: *version, albedo: *albedo };
+                Ok(Self::Single { model, sigma_samp: rate(sampling)?, control })
+            }
+            EstimatorSpec::RayMarching { steps, offset } => {
+                own_points(spec.sampling, "ray_marching")?;
+                let marching = |steps, offset| {
+                    RayMarching::new(steps, offset)
+                        .map_err(|error| Failure::refused(format!("integrator.estimator.steps: {error}")))
+                };
+                let shadow = match &spec.shadow {
+                    None => marching(*steps, *offset)?,
+                    Some(RayEstimatorSpec::Sampled(EstimatorSpec::RayMarching { steps, offset })) => {
+                        marching(*steps, *offset)?
+                    }
+                    Some(_) => {
+                        return Err(Failure::refused(
+                            "integrator.shadow.kind: must be ray_marching as the estimator is",
+                        ));
+                    }
+                };
+                Ok(Self::Marching { steps: *steps, offset: *offset, shadow })
+            }
+            EstimatorSpec::LineIntegral { majorant, splits } => {
+                own_points(spec.sampling, "line_integral")?;
+                let line = LineIntegral::new(*splits)
+                    .map_err(|error| Failure::refused(format!("integrator.estimator.splits: {error}")))?;
+                Ok(Self::Line { majorant: *majorant, line })
+            }
+            EstimatorSpec::Woodcock { .. } => Err(Failure::refused(
+                "integrator.estimator.kind: must be regular, double_particle, single_particle, line_integral or \
+                 ray_marching for single_scattering, which asks for transmittance at every distance",
+            )),
+        }
+    }
+}
+
+/// Some estimators scatter at points of their own.
+fn own_points(sampling: Strategy, name: &str) -> Result<(), Failure> {
+    if sampling == Strategy::Attenuation {
+        return Ok(());
+    }
+    Err(Failure::refused(format!(
+        "integrator.sampling: must be attenuation, since {name} scatters at points of its own"
+    )))
+}
+
+/// The explorers of an estimator's control, if it has one.
+fn explorers_of(estimator: &RayEstimatorSpec) -> Result<Option<usize>, Failure> {
+    let RayEstimatorSpec::Sampled(
+        EstimatorSpec::DoubleParticle { control, .. } | EstimatorSpec::SingleParticle { control, .. },
+    ) = estimator
+    else {
+        return Ok(None);
+    };
+    match *control {
+        ControlSpec::None => Ok(None),
+        ControlSpec::Explorers { count } => Ok(Some(count)),
+        ControlSpec::Constant(_) | ControlSpec::PiecewiseLinear { .. } => Err(Failure::refused(
+            "integrator.estimator.control.kind: must be none or explorers for single_scattering",
+        )),
+    }
+}
+
+fn sampling(strategy: Strategy, heuristic: Heuristic) -> Sampling {
+    use Technique::{Attenuation, Scattering, Source};
+    match strategy {
+        Strategy::Attenuation => Sampling::One(Attenuation),
+        Strategy::AttenuationResampled => Sampling::AttenuationResampled,
+        Strategy::Source => Sampling::One(Source),
+        Strategy::Scattering => Sampling::One(Scattering),
+        Strategy::SourceAndScattering => Sampling::Two(Source, Scattering, heuristic),
+        Strategy::AttenuationAndSource => Sampling::Two(Attenuation, Source, heuristic),
+        Strategy::AttenuationAndScattering => Sampling::Two(Attenuation, Scattering, heuristic),
+    }
+}
+
+/// Shadow rays where a closed form exists: one branch per ray.
+#[derive(Debug)]
+enum ShadowWorker<'a> {
+    Regular(Regular),
+    Sampled(RayWorker<'a>),
+}
+
+impl<M: LineThickness> RayTransmittance<M> for ShadowWorker<'_> {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
+        match self {
+            Self::Regular(regular) => RayTransmittance::estimate(regular, ray, source),
+            Self::Sampled(worker) => worker.estimate(ray, source),
+        }
+    }
+}
+
+impl<M, P, C, W, T> TileIntegrator<C> for SingleScattering<'_, M, P, C, W, T> where Self: Integrator<C> {}
+impl<M, P, C> TileIntegrator<C> for Marching<'_, M, P, C> where Self: Integrator<C> {}
+impl<M, P, C, T> TileIntegrator<C> for LineSampled<'_, M, P, C, T> where Self: Integrator<C> {}

@@ -1,0 +1,165 @@
+//! Files that appear whole or not at all.
+
+use crate::Failure;
+use crate::image::Format;
+use crate::interrupt::{Guard, shield};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// What a file is to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The picture.
+    Image(Format),
+    /// The numbers.
+    Statistics,
+}
+
+impl Kind {
+    /// What the extension says.
+    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+            return Ok(Self::Statistics);
+        }
+        Format::of(path).map(Self::Image).ok_or_else(|| {
+            Failure::refused(format!(
+                "--out {}: the extension must be .pfm, .exr, .png or .json",
+                path.display()
+            ))
+        })
+    }
+}
+
+/// A temporary file beside the one that it will become.
+#[derive(Debug)]
+pub(super) struct Prepared {
+    given: PathBuf,
+    target: PathBuf,
+    file: NamedTempFile,
+    guard: Guard,
+}
+
+impl Prepared {
+    /// Prepares to write `path`: a long run should not end with the news that nobody can write there.
+    pub(super) fn new(path: &Path) -> Result<Self, Failure> {
+        let failed = |error: std::io::Error| Failure::not_written(path, error);
+        // What a link points to is replaced, not the link.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if fs::symlink_metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
+            return Err(Failure::not_written(path, "it exists and is no regular file; it is left as it is"));
+        }
+        let Some(name) = target.file_name() else {
+            return Err(Failure::not_written(path, "the path has no name"));
+        };
+        let parent = match target.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+        let mut prefix = std::ffi::OsString::from(".");
+        prefix.push(name);
+        prefix.push(".partial-");
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix);
+        // The rights of an ordinary file: it will be renamed into one.
+        #[cfg(unix)]
+        let permissions = <fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666);
+        #[cfg(unix)]
+        builder.permissions(permissions);
+        // An interrupt comes before this or finds it registered.
+        let mut shield = shield();
+        let file = builder.tempfile_in(parent).map_err(failed)?;
+        let guard = shield.remove_on_interrupt(file.path());
+        Ok(Self { given: path.to_owned(), target, file, guard })
+    }
+
+    /// Fills the temporary file.
+    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let file = self.file.as_file_mut();
+        file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| Failure::not_written(&self.given, e))
+    }
+}
+
+/// Puts all files in their places.
+///
+/// # Errors
+/// If one cannot be: those behind it are not put either.
+pub(super) fn put(files: Vec<Prepared>) -> Result<(), Failure> {
+    let mut result = Ok(());
+    // Guards ask for the shield when they are dropped: what is left over outlives it.
+    let mut left_over = Vec::new();
+    {
+        let mut shield = shield();
+        for Prepared { given, target, file, guard } in files {
+            if result.is_err() {
+                left_over.push((file, guard));
+                continue;
+            }
+            match file.persist(&target) {
+                Ok(_) => shield.forget(guard),
+                Err(error) => {
+                    result = Err(Failure::not_written(&given, error.error));
+                    left_over.push((error.file, guard));
+                }
+            }
+        }
+    }
+    drop(left_over);
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn nothing_is_there_before_it_is_put() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("image.pfm");
+        fs::write(&path, "old").unwrap();
+        let mut prepared = Prepared::new(&path).unwrap();
+        prepared.write(b"new").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        drop(prepared);
+        assert_eq!(names(root.path()), ["image.pfm"]);
+        let mut prepared = Prepared::new(&path).unwrap();
+        prepared.write(b"new").unwrap();
+        put(vec![prepared]).unwrap();
+        assert_eq!(
+            (names(root.path()), fs::read(&path).unwrap()),
+            (vec!["image.pfm".to_owned()], b"new".to_vec())
+        );
+    }
+
+    #[test]
+    fn what_is_no_file_is_left_alone() {
+        let root = tempfile::tempdir().unwrap();
+        fs::create_dir(root.path().join("folder.png")).unwrap();
+        for name in ["folder.png", "no/such/image.png", ".."] {
+            assert_eq!(Prepared::new(&root.path().join(name)).unwrap_err().code(), crate::NOT_WRITTEN);
+        }
+        assert_eq!(names(root.path()), ["folder.png"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_is_as_readable_as_any() {
+        use std::os::unix::fs::PermissionsExt;
+        let root = tempfile::tempdir().unwrap();
+        let (path, ordinary) = (root.path().join("image.png"), root.path().join("ordinary"));
+        fs::write(&ordinary, "").unwrap();
+        put(vec![Prepared::new(&path).unwrap()]).unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        assert_eq!(mode(&path), mode(&ordinary));
+    }
+}

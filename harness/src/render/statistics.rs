@@ -1,0 +1,202 @@
+//! What an image tells: mean radiance, variance, cost, efficiency.
+
+use super::draw::{Drawn, Spent};
+use super::pixel::Pixel;
+use crate::image::Image;
+use crate::plan::ScenePlan;
+use crate::result::{Provenance, number};
+use fairflight_scene::Spectrum;
+use serde::Serialize;
+
+/// The statistics of an image, in the form of the published spec.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Statistics {
+    pub image: Size,
+    pub radiance: Radiance,
+    pub variance: Variance,
+    pub reference: Option<ReferenceError>,
+    pub cost: Cost,
+    pub efficiency: Efficiency,
+    /// How mean squared error and efficiency are meant.
+    pub method: String,
+    pub warnings: Vec<String>,
+    pub provenance: Provenance,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(super) struct Size {
+    pub width: u32,
+    pub height: u32,
+    pub samples_per_pixel: u32,
+    pub channels: usize,
+}
+
+/// Mean over pixels and channels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Radiance {
+    pub mean: f64,
+    #[serde(serialize_with = "number")]
+    pub standard_error: Option<f64>,
+    /// The mean of each channel: one if gray.
+    pub channels: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Variance {
+    /// Of one sample, averaged over pixels and channels.
+    #[serde(serialize_with = "number")]
+    pub mean_per_pixel: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct ReferenceError {
+    /// Over all pixels and channels.
+    pub rmse: f64,
+    pub file: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Cost {
+    pub lookups: u64,
+    /// Camera rays.
+    pub rays: u64,
+    /// By the clock on the wall.
+    pub seconds: f64,
+    /// Over all threads.
+    pub cpu_seconds: f64,
+}
+
+/// 1/(MSE · cost), null at zero error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Efficiency {
+    #[serde(serialize_with = "number")]
+    pub per_second: Option<f64>,
+    #[serde(serialize_with = "number")]
+    pub per_lookup: Option<f64>,
+}
+
+/// What was drawn, read by all writers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Moments {
+    channels: usize,
+    /// Mean radiance per pixel.
+    means: Vec<[f64; 3]>,
+    /// The mean over pixels and channels of the variance of one sample.
+    variance: Option<f64>,
+    /// The variance of the mean of all pixels and channels.
+    mean_variance: Option<f64>,
+    cost: Spent,
+    warning: Option<String>,
+}
+
+impl<C: Spectrum> From<Drawn<C>> for Moments {
+    fn from(drawn: Drawn<C>) -> Self {
+        let pixels = &drawn.pixels;
+        let n = pixels.len() as f64;
+        let sum = |values: &mut dyn Iterator<Item = Option<f64>>| values.sum::<Option<f64>>().map(|s| s / n);
+        let apart = sum(&mut pixels.iter().map(Pixel::mean_variance_gray)).map(|variance| variance / n);
+        Self {
+            channels: C::CHANNELS,
+            means: pixels.iter().map(|pixel| pixel.mean().rgb()).collect(),
+            variance: sum(&mut pixels.iter().map(|pixel| pixel.variance().map(C::mean))),
+            mean_variance: apart.zip(drawn.shared_variance).map(|(apart, shared)| apart + shared),
+            cost: drawn.cost,
+            warning: drawn.warning,
+        }
+    }
+}
+
+impl Moments {
+    /// The image; a pixel that f32 cannot hold is named.
+    pub(super) fn image(&self, plan: &ScenePlan) -> Result<Image, String> {
+        let [width, height] = plan.camera.resolution().map(|side| side as usize);
+        // Beyond the range of f32 the conversion gives infinity.
+        let pixels: Vec<[f32; 3]> = self.means.iter().map(|mean| mean.map(|value| value as f32)).collect();
+        let lost = pixels.iter().position(|pixel| pixel.iter().any(|value| !value.is_finite()));
+        match lost {
+            None => Ok(Image::new(width, height, pixels)),
+            Some(i) => Err(format!(
+                "pixel (column {}, row {}) is {:?}, beyond the range of a 32-bit float",
+                i % width,
+                i / width,
+                self.means[i]
+            )),
+        }
+    }
+
+    fn mean(&self) -> [f64; 3] {
+        let n = self.means.len() as f64;
+        [0, 1, 2].map(|k| self.means.iter().map(|mean| mean[k]).sum::<f64>() / n)
+    }
+
+    /// Mean over pixels and channels of the squared difference.
+    fn squared_error(&self, reference: &Image) -> f64 {
+        let differences = self.means.as_flattened().iter().zip(reference.pixels().as_flattened());
+        let sum: f64 = differences.map(|(found, expected)| (found - f64::from(*expected)).powi(2)).sum();
+        sum / (3.0 * self.means.len() as f64)
+    }
+
+    /// The statistics of what was drawn in `seconds` by the clock.
+    pub(super) fn statistics(
+        &self,
+        plan: &ScenePlan,
+        reference: Option<(&Image, String)>,
+        seconds: f64,
+        warnings: Vec<String>,
+        provenance: Provenance,
+    ) -> Statistics {
+        let [width, height] = plan.camera.resolution();
+        let samples = f64::from(plan.samples_per_pixel);
+        let mean = self.mean();
+        let reference = reference.map(|(image, file)| (self.squared_error(image), file));
+        let squared_error = match &reference {
+            Some((error, _)) => Some(*error),
+            None => self.variance.map(|variance| variance / samples),
+        };
+        let method = match &reference {
+            Some(_) => {
+                "MSE: mean over pixels and channels of the squared difference from the reference image"
+            }
+            None => {
+                "MSE: sample variance / samples per pixel, mean over pixels and channels; null for one sample"
+            }
+        };
+        let efficiency = |cost: f64| {
+            squared_error.filter(|error| *error > 0.0 && cost > 0.0).map(|error| 1.0 / (error * cost))
+        };
+        let Spent { lookups, cpu_seconds, .. } = self.cost;
+        Statistics {
+            image: Size { width, height, samples_per_pixel: plan.samples_per_pixel, channels: self.channels },
+            radiance: Radiance {
+                mean: mean[..self.channels].iter().sum::<f64>() / self.channels as f64,
+                standard_error: self.mean_variance.map(f64::sqrt),
+                channels: mean[..self.channels].to_vec(),
+            },
+            variance: Variance { mean_per_pixel: self.variance },
+            reference: reference.map(|(error, file)| ReferenceError { rmse: error.sqrt(), file }),
+            cost: Cost {
+                lookups,
+                rays: self.means.len() as u64 * u64::from(plan.samples_per_pixel),
+                seconds,
+                cpu_seconds,
+            },
+            efficiency: Efficiency {
+                per_second: efficiency(seconds),
+                per_lookup: efficiency(lookups as f64),
+            },
+            method: format!("{method}; seconds by the clock on the wall; look-ups are counted while it runs"),
+            warnings,
+            provenance,
+        }
+    }
+
+    /// What is to be said of the walks.
+    pub(super) fn warning(&self) -> Option<String> {
+        self.warning.clone()
+    }
+
+    /// Walks that were cut.
+    pub(super) fn truncated(&self) -> u64 {
+        self.cost.truncated
+    }
+}

@@ -1,0 +1,88 @@
+//! A scene and how it is to be rendered: the spec of `harness render`.
+
+mod camera;
+mod colour;
+mod integrator;
+mod light;
+mod ray_estimator;
+mod volume;
+
+pub use colour::ColourSpec;
+pub use integrator::{
+    Collisions, IntegratorSpec, Particles, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec,
+    WalkSpec,
+};
+pub use light::LightSpec;
+pub use ray_estimator::RayEstimatorSpec;
+pub use volume::{PhaseSpec, VolumeSpec};
+
+use super::Node;
+use crate::Failure;
+use fairflight_scene::Camera;
+use serde_json::Value;
+
+/// A scene as given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSpec {
+    /// Who looks.
+    pub camera: Camera,
+    /// What scatters; without it, vacuum.
+    pub medium: Option<VolumeSpec>,
+    /// What shines.
+    pub lights: Vec<LightSpec>,
+    /// What estimates a pixel.
+    pub integrator: IntegratorSpec,
+    /// Estimates per pixel.
+    pub samples_per_pixel: u32,
+    /// The seed of all variates.
+    pub seed: u64,
+}
+
+/// What the command line says instead of the spec.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneOverrides {
+    /// `--samples-per-pixel`
+    pub samples_per_pixel: Option<u32>,
+    /// `--seed`
+    pub seed: Option<u64>,
+}
+
+impl SceneSpec {
+    /// Reads a whole spec.
+    ///
+    /// # Errors
+    /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
+    pub fn parse(text: &str, overrides: SceneOverrides) -> Result<Self, Failure> {
+        let spec: Value =
+            serde_json::from_str(text).map_err(|error| Failure::refused(format!("not JSON: {error}")))?;
+        let root = Node::root(&spec).object()?;
+        let allow_gain = root.optional("allow_gain").map_or(Ok(false), |node| node.boolean())?;
+        let camera = camera::read(&root.required("camera")?)?;
+        let medium = root.optional("medium").map(|node| VolumeSpec::read(&node, allow_gain)).transpose()?;
+        let lights =
+            root.required("lights")?.items()?.iter().map(LightSpec::read).collect::<Result<_, _>>()?;
+        if let Some(surfaces) = root.optional("surfaces")
+            && !surfaces.items()?.is_empty()
+        {
+            return Err(surfaces.refuse("surfaces come with a later version, the list must be empty"));
+        }
+        let integrator = IntegratorSpec::read(&root.required("integrator")?)?;
+        let or_override = |key, least, most, instead: Option<u64>| match (root.optional(key), instead) {
+            (Some(node), instead) => node.integer(least, most).map(|given| instead.unwrap_or(given)),
+            (None, Some(instead)) => Ok(instead),
+            (None, None) => root.required(key).and_then(|node| node.integer(least, most)),
+        };
+        let most = u64::from(u32::MAX);
+        let samples = or_override("samples_per_pixel", 1, most, overrides.samples_per_pixel.map(u64::from))?;
+        let seed = or_override("seed", 0, u64::MAX, overrides.seed)?;
+        root.finish()?;
+        Ok(Self { camera, medium, lights, integrator, samples_per_pixel: samples as u32, seed })
+    }
+
+    /// Whether one channel is enough: no light and no albedo has a colour. What an environment map holds is not known here.
+    #[must_use]
+    pub fn is_gray(&self) -> bool {
+        self.medium.iter().all(|medium| medium.albedo.is_gray())
+            && self.lights.iter().filter_map(LightSpec::strength).all(ColourSpec::is_gray)
+    }
+}
