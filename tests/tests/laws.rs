@@ -14,11 +14,12 @@ fn holds_on(medium: &str) {
         .map(|(check, result)| format!("{}: {:?}: {}", check.id, result.holds, result.reason))
         .collect();
     assert!(not_holding.is_empty(), "{not_holding:#?}");
-    // Acceptance needs power: a bias of half would have shown in each.
+    // Acceptance needs power: a bias of half would have shown in each, of a twentieth where only means are judged.
+    let most = if medium == "paths" { 0.05 } else { 0.5 };
     for (check, result) in &results {
         if check.law != Law::Collision {
             let detectable = result.detectable_relative_bias;
-            assert!(detectable.is_some_and(|bias| bias < 0.5), "{}: {detectable:?}", check.id);
+            assert!(detectable.is_some_and(|bias| bias < most), "{}: {detectable:?}", check.id);
         }
         assert!(check.law != Law::Variance || result.variance_is_tested, "{}", check.id);
     }
@@ -54,6 +55,7 @@ media!(
     voxels,
     expression,
     freeflight,
+    paths,
 );
 
 #[test]

@@ -2,6 +2,7 @@
 //!
 //! * [`transmittance::check`], [`collision::check`], [`freeflight::check`], [`phase::check`]: one law each, for any
 //!   implementer.
+//! * [`paths`]: radiance against quadrature, slabs and closed forms.
 //! * [`scores`]: which values an estimate can take, derived from what is known of a profile.
 //! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
 //! * [`hard_cases()`]: numerically hard inputs with their exact answers.
@@ -23,6 +24,7 @@ mod twins;
 pub mod collision;
 pub mod freeflight;
 pub mod lookups;
+pub mod paths;
 pub mod phase;
 pub mod scores;
 pub mod transmittance;

@@ -64,4 +64,28 @@ impl CheckResult {
             ..estimates
         }
     }
+
+    /// The outcome of several verdicts that share one check: it holds if all do. Its numbers are those of the largest |z|, its
+    /// power that of the weakest.
+    #[must_use]
+    pub(crate) fn of_all(parts: impl IntoIterator<Item = (&'static str, Self)>) -> Self {
+        let mut whole = Self::exact(true, "");
+        let mut weakest = Some(0.0_f64);
+        for (name, part) in parts {
+            whole.holds = match (whole.holds, part.holds) {
+                (Some(false), _) | (_, Some(false)) => Some(false),
+                (Some(true), Some(true)) => Some(true),
+                _ => None,
+            };
+            let size = |z: Option<f64>| z.map_or(0.0, f64::abs);
+            if whole.mean_z.is_none() || size(part.mean_z) > size(whole.mean_z) {
+                whole.mean_z = part.mean_z;
+            }
+            whole.samples = whole.samples.max(part.samples);
+            weakest = weakest.zip(part.detectable_relative_bias).map(|(a, b)| a.max(b));
+            let separator = if whole.reason.is_empty() { "" } else { "; " };
+            whole.reason = format!("{}{separator}{name}: {}", whole.reason, part.reason);
+        }
+        Self { detectable_relative_bias: weakest, ..whole }
+    }
 }

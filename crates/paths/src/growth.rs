@@ -91,7 +91,9 @@ where
     R: SamplingExtinction,
     S: UniformSource + ?Sized,
 {
-    let (model, _) = walk.collisions(volume);
+    let (model, ratio) = walk.collisions(volume);
+    // The greatest channel's energy is multiplied by this at each scattering: above 1 for a gain, which the probabilities leave out.
+    let gain = ratio.max_channel();
     let mut particles: Vec<Line> = (0..PARTICLES).map(|_| start(volume, source)).collect();
     let mut next: Vec<(Line, f64)> = Vec::with_capacity(2 * PARTICLES);
     let mut sum = 0.0;
@@ -107,7 +109,8 @@ where
             let r = ray.sigma_t(s) / sigma_samp;
             let origin = ray.world_point(s);
             // Both branches, each with its share of the second moment: no need to choose.
-            let (scattered, transmitted) = (model.scattered(r).moment(2), model.transmitted(r).moment(2));
+            let scattered = gain * gain * model.scattered(r).moment(2);
+            let transmitted = model.transmitted(r).moment(2);
             count += scattered + transmitted;
             if scattered > 0.0 {
                 let (u, v) = (source.next_uniform(), source.next_uniform());
@@ -212,6 +215,14 @@ mod tests {
         let growth = growth(1.05, 2000.0, 0.8, 1.0, Version::Terminating);
         assert!((growth.factor - 0.89).abs() < 0.01, "{growth:?}");
         assert_eq!(growth.criticality(), Criticality::Subcritical);
+    }
+
+    #[test]
+    fn a_gain_counts_squared() {
+        // r = 1, a = 1.2: all is scattered, with 1.2 times the energy.
+        let growth = growth(1.0, 1e9, 1.2, 1.0, Version::NonTerminating);
+        assert!((growth.factor - 1.44).abs() < 1e-9, "{growth:?}");
+        assert_eq!(growth.criticality(), Criticality::Supercritical);
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod estimators;
 mod exact;
 mod freeflight;
 mod media;
+pub(crate) mod paths;
 mod phase;
 mod single_particle;
 mod specimen;
@@ -26,6 +27,12 @@ pub enum Law {
     Collision,
     /// A phase function is normalised, has its mean cosine, and is drawn as it is evaluated.
     Phase,
+    /// An integrator's expectation is the radiance of the equation of transfer.
+    Radiance,
+    /// Importons and photons have the same expectation.
+    Adjoint,
+    /// The squared energy of walks grows as their collisions say, by exact algebra.
+    Growth,
     /// A wrong twin is rejected.
     WrongTwin,
     /// A hard case has its exact answer, or is refused where it must be.
@@ -43,8 +50,8 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `collision/model`, `phase/name`, `twin/name`,
-    /// `hard/number name`.
+    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `collision/model`, `phase/name`,
+    /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
@@ -85,7 +92,13 @@ impl Check {
         match (effort, self.law) {
             (
                 Effort::Full,
-                Law::Transmittance | Law::Variance | Law::OwnExpectation | Law::FreeFlight | Law::Phase,
+                Law::Transmittance
+                | Law::Variance
+                | Law::OwnExpectation
+                | Law::FreeFlight
+                | Law::Phase
+                | Law::Radiance
+                | Law::Adjoint,
             ) => 6 * self.quick_samples,
             _ => self.quick_samples,
         }
@@ -120,6 +133,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
     checks.extend(freeflight::free_flights());
+    checks.extend(paths::walks_in_space());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {

@@ -9,6 +9,7 @@ mod freeflight;
 mod line_integral;
 mod logarithm;
 mod majorant;
+mod paths;
 mod phase;
 mod sampling;
 mod trial;
@@ -107,5 +108,6 @@ pub fn twins() -> Vec<Twin> {
     all.extend(logarithm::twins());
     all.extend(variance::twins());
     all.extend(phase::twins());
+    all.extend(paths::twins());
     all
 }
