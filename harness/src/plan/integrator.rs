@@ -131,19 +131,8 @@ impl IntegratorPlan {
         J: IntegratorJob<C>,
     {
         match self {
-            Self::Transmittance(estimator) => {
-                Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
-            }
-            Self::ParticleTracer(walk) => Ok(job.run(ParticleTracer::new(volume, lights, walk.walk()))),
-            Self::PhotonTracer(walk) => {
-                Ok(job.run(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling()))))
-            }
-            Self::LineSplitting { walk, line, starts, majorant } => {
-                let asked = (*line, *starts, *majorant);
-                Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
-            }
             Self::SingleScattering(plan) => plan.by_look_ups(volume, lights, unlawful, job),
-            Self::RegularTransmittance => Err(needs_closed_form("estimator.kind: regular")),
+            _ => self.on_any_medium(volume, lights, unlawful, job),
         }
     }
 
@@ -167,10 +156,39 @@ impl IntegratorPlan {
         match self {
             Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, lights, Regular))),
             Self::SingleScattering(plan) => plan.by_closed_form(volume, lights, unlawful, job),
-            Self::Transmittance(_)
-            | Self::ParticleTracer(_)
-            | Self::PhotonTracer(_)
-            | Self::LineSplitting { .. } => self.by_look_ups(volume, lights, unlawful, job),
+            _ => self.on_any_medium(volume, lights, unlawful, job),
+        }
+    }
+
+    /// Integrators that are the same whatever is known of the medium; one copy of each per medium.
+    fn on_any_medium<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        match self {
+            Self::Transmittance(estimator) => {
+                Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
+            }
+            Self::ParticleTracer(walk) => Ok(job.run(ParticleTracer::new(volume, lights, walk.walk()))),
+            Self::PhotonTracer(walk) => {
+                Ok(job.run(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling()))))
+            }
+            Self::LineSplitting { walk, line, starts, majorant } => {
+                let asked = (*line, *starts, *majorant);
+                Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
+            }
+            Self::RegularTransmittance | Self::SingleScattering(_) => {
+                Err(needs_closed_form("estimator.kind: regular"))
+            }
         }
     }
 

@@ -133,7 +133,9 @@ pub struct RayWorker<'a> {
 }
 
 impl<M: Medium> RayTransmittance<M> for RayWorker<'_> {
-    #[inline]
+    // One copy per medium, and not one in each integrator: a call per ray costs nothing, five estimators in each of dozens of
+    // integrators cost minutes of compilation.
+    #[inline(never)]
     fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
         let Self { estimator, control, unlawful } = self;
         let bounded = |majorant| Bounded::new(ray, majorant).expect("the spec has a majorant of at least 0");

@@ -15,7 +15,7 @@ use fairflight_paths::single_scattering::{
 use fairflight_paths::{Integrator, RayTransmittance};
 use fairflight_scene::{Lights, Spectrum, Volume};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{LineIntegral, Offset, RayMarching, Regular, Starts};
+use fairflight_transmittance::{Explorers, Interaction, LineIntegral, Offset, RayMarching, Regular, Starts};
 use std::cell::Cell;
 
 /// Single scattering whose parameters are checked.
@@ -37,7 +37,7 @@ enum PrimaryPlan {
     Regular,
     Double { sigma_samp: f64, control: bool },
     Single { model: SingleParticle, sigma_samp: f64, control: bool },
-    Line { majorant: f64, line: LineIntegral },
+    Line { majorant: f64, line: LineIntegral, starts: Starts },
     Marching { steps: u32, offset: Offset, shadow: RayMarching },
 }
 
@@ -163,14 +163,14 @@ impl SingleScatteringPlan {
             PrimaryPlan::Double { sigma_samp, control } => {
                 let model = DoubleParticle { albedo: Albedo::default() };
                 let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
-                self.with(volume, lights, walk, shadow, job)
+                self.with(volume, lights, AnyTracked::Double(walk), shadow, job)
             }
             PrimaryPlan::Single { model, sigma_samp, control } => {
                 let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
-                self.with(volume, lights, walk, shadow, job)
+                self.with(volume, lights, AnyTracked::Single(walk), shadow, job)
             }
-            PrimaryPlan::Line { majorant, line } => {
-                Ok(job.run(LineSampled::new(volume, lights, (line, Starts::Equidistant, majorant), shadow)))
+            PrimaryPlan::Line { majorant, line, starts } => {
+                Ok(job.run(LineSampled::new(volume, lights, (line, starts, majorant), shadow)))
             }
             PrimaryPlan::Marching { steps, offset, shadow } => {
                 Ok(job.run(Marching::new(volume, lights, (steps, offset), shadow)))
@@ -258,7 +258,7 @@ impl PrimaryPlan {
                 own_points(spec.sampling, "line_integral")?;
                 let line = LineIntegral::new(*splits)
                     .map_err(|error| Failure::refused(format!("integrator.estimator.splits: {error}")))?;
-                Ok(Self::Line { majorant: *majorant, line })
+                Ok(Self::Line { majorant: *majorant, line, starts: spec.starts })
             }
             EstimatorSpec::Woodcock { .. } => Err(Failure::refused(
                 "integrator.estimator.kind: must be regular, double_particle, single_particle, line_integral or \
@@ -305,6 +305,52 @@ fn sampling(strategy: Strategy, heuristic: Heuristic) -> Sampling {
         Strategy::SourceAndScattering => Sampling::Two(Source, Scattering, heuristic),
         Strategy::AttenuationAndSource => Sampling::Two(Attenuation, Source, heuristic),
         Strategy::AttenuationAndScattering => Sampling::Two(Attenuation, Scattering, heuristic),
+    }
+}
+
+/// Tracking of the camera ray with either model: one branch per question, and half of the integrators to compile.
+#[derive(Debug)]
+enum AnyTracked {
+    Double(Tracked<DoubleParticle>),
+    Single(Tracked<SingleParticle>),
+}
+
+impl<M: Medium> Primary<M> for AnyTracked {
+    fn trace<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) {
+        match self {
+            Self::Double(walk) => walk.trace(ray, source),
+            Self::Single(walk) => walk.trace(ray, source),
+        }
+    }
+    fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64 {
+        match self {
+            Self::Double(walk) => walk.transmittance(ray, s),
+            Self::Single(walk) => walk.transmittance(ray, s),
+        }
+    }
+    fn interactions(&self) -> &[Interaction] {
+        match self {
+            Self::Double(walk) => Primary::<M>::interactions(walk),
+            Self::Single(walk) => Primary::<M>::interactions(walk),
+        }
+    }
+    fn transmittance_before(&self, index: usize) -> f64 {
+        match self {
+            Self::Double(walk) => Primary::<M>::transmittance_before(walk, index),
+            Self::Single(walk) => Primary::<M>::transmittance_before(walk, index),
+        }
+    }
+    fn intensity(&self) -> f64 {
+        match self {
+            Self::Double(walk) => Primary::<M>::intensity(walk),
+            Self::Single(walk) => Primary::<M>::intensity(walk),
+        }
+    }
+    fn fitted(&self) -> Option<&Explorers> {
+        match self {
+            Self::Double(walk) => Primary::<M>::fitted(walk),
+            Self::Single(walk) => Primary::<M>::fitted(walk),
+        }
     }
 }
 

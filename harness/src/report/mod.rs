@@ -2,6 +2,7 @@
 
 pub(crate) mod command;
 pub mod document;
+mod free_flight;
 mod particle_tracing;
 mod progress;
 pub(crate) mod registry;

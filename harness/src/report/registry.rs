@@ -1,7 +1,7 @@
 //! The reports that there are, by name.
 
 use super::document::{Document, Options};
-use super::{particle_tracing, single_scattering};
+use super::{free_flight, particle_tracing, single_scattering};
 use crate::{Environment, Failure};
 
 /// A report that can be asked for.
@@ -24,7 +24,7 @@ pub(crate) enum Study {
 }
 
 /// All reports; the first is the default.
-pub(crate) const REPORTS: [ReportKind; 3] = [
+pub(crate) const REPORTS: [ReportKind; 4] = [
     ReportKind {
         name: "standard",
         about: "transmittance estimators against their closed forms",
@@ -39,6 +39,11 @@ pub(crate) const REPORTS: [ReportKind; 3] = [
         name: "single-scattering",
         about: "a point light in a medium: all methods at equal look-ups, speed against error",
         study: Study::Document(single_scattering::document),
+    },
+    ReportKind {
+        name: "free-flight",
+        about: "distance samplers by their law, algorithm 2 from homogeneous to inhomogeneous, two wavelengths",
+        study: Study::Document(free_flight::document),
     },
 ];
 

@@ -217,7 +217,9 @@ where
         for k in 0..self.samples {
             let target = (f64::from(k) + source.next_uniform()) / f64::from(self.samples) * total;
             let chosen = self.candidates.partition_point(|&(.., below)| below <= target);
-            let (index, score, _) = self.candidates[chosen.min(self.candidates.len() - 1)];
+            // Rounding may put the target on the total itself: the last candidate that can be chosen is meant.
+            let chosen = chosen.min(self.candidates.partition_point(|&(.., below)| below < total));
+            let (index, score, _) = self.candidates[chosen];
             let probability = score.mean().abs() / total;
             let s = self.primary.interactions()[index].distance;
             let Some(connection) = light.connect(ray.world_point(s)) else { continue };

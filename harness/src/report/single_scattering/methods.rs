@@ -61,7 +61,7 @@ fn marching(budget: f64) -> Method {
 pub(super) fn all(budget: f64) -> Vec<Method> {
     vec![
         marching(budget),
-        flights("Woodcock flights", 1),
+        flights("one Woodcock flight", 1),
         flights("algorithm 2, 4 flights", 4),
         sampled("attenuation", "attenuation", 1),
         sampled("attenuation, resampled", "attenuation_resampled", 1),

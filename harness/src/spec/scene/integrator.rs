@@ -45,6 +45,8 @@ pub struct SingleScatteringSpec {
     pub samples_per_ray: u32,
     /// How techniques are combined.
     pub heuristic: Heuristic,
+    /// Of the flights of `line_integral`.
+    pub starts: Starts,
     /// Of the transmittance to the lights; without it, the camera ray's.
     pub shadow: Option<RayEstimatorSpec>,
     /// How many neighbouring pixels share one fitted control.
@@ -173,16 +175,13 @@ impl IntegratorSpec {
                 walk: WalkSpec::take_from(&object)?,
                 majorant: object.required("majorant")?.non_negative()?,
                 splits: object.required("splits")?.integer(1, MOST)? as u32,
-                starts: named_or(
-                    &object,
-                    "starts",
-                    &[("equidistant", Starts::Equidistant), ("independent", Starts::Independent)],
-                )?,
+                starts: read_starts(&object)?,
             },
             "single_scattering" => Self::SingleScattering(SingleScatteringSpec {
                 sampling: named(&object.required("sampling")?, &Strategy::NAMES)?,
                 estimator: estimator()?,
                 samples_per_ray: object.required("samples_per_ray")?.integer(1, MOST)? as u32,
+                starts: read_starts(&object)?,
                 heuristic: named_or(
                     &object,
                     "heuristic",
@@ -246,6 +245,10 @@ impl SamplingFieldSpec {
         object.finish()?;
         Ok(field)
     }
+}
+
+fn read_starts(object: &Object<'_>) -> Result<Starts, Failure> {
+    named_or(object, "starts", &[("equidistant", Starts::Equidistant), ("independent", Starts::Independent)])
 }
 
 /// One of some names.

@@ -1,0 +1,209 @@
+//! Fig. 2: splitting along the primary ray by algorithm 2, from equidistant and from independent starts, from a homogeneous to a
+//! highly inhomogeneous hazy medium, beside ray marching at as many look-ups.
+
+use super::Run;
+use crate::Failure;
+use crate::report::document::{
+    Axis, Cell, Chart, Curve, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
+};
+use crate::report::replicas::{Measured, Replicas, Subject};
+use serde_json::{Value, json};
+
+/// Powers of the wave: the higher, the less homogeneous.
+const POWERS: [u32; 5] = [0, 1, 2, 6, 20];
+/// Those whose images are shown.
+const SHOWN: [u32; 2] = [0, 20];
+/// Flights per camera ray.
+const FLIGHTS: u32 = 8;
+/// Camera rays per pixel: a low sampling rate, as in the paper.
+const RAYS: u32 = 2;
+/// Mean extinction of all media \[1/length\].
+const MEAN: f64 = 0.12;
+/// Independent images per measurement.
+const REPLICAS: u32 = 4;
+
+pub(super) fn steps() -> u64 {
+    POWERS.len() as u64 * 4
+}
+
+/// One medium.
+pub(super) struct Point {
+    power: u32,
+    /// Majorant over mean extinction.
+    pub(super) inhomogeneity: f64,
+    pub(super) equidistant: Measured,
+    pub(super) independent: Measured,
+    pub(super) marching: Measured,
+    images: [(&'static str, Replicas); 3],
+}
+
+pub(super) struct Splitting {
+    pub(super) points: Vec<Point>,
+    pub(super) section: Section,
+}
+
+/// E\[((1 + cos φ)/2)^p\] = C(2p, p)/4^p.
+fn mean_of_wave(power: u32) -> f64 {
+    (1..=power).map(|k| f64::from(2 * k - 1) / f64::from(2 * k)).product()
+}
+
+/// A ball of haze with `MEAN` extinction, its waves to the power `power`, lit by sixteen lights around it.
+fn scene(resolution: u32, power: u32) -> Subject {
+    let majorant = MEAN / mean_of_wave(power);
+    let wave = format!("{majorant}*(0.5*cos(1.5*(x+y+z)) + 0.5)^{power}");
+    let lights: Vec<Value> = (0..16)
+        .map(|k| {
+            let turn = f64::from(k) * 2.399_963_229_728_653;
+            let height = (f64::from(k) + 0.5) / 8.0 - 1.0;
+            let (sin, cos) = turn.sin_cos();
+            let across = 13.0 * (1.0 - height * height).sqrt();
+            json!({ "kind": "point", "position": [across * cos, 13.0 * height, 10.0 + across * sin], "power": 400.0 })
+        })
+        .collect();
+    Subject::new(json!({
+        "camera": { "origin": [0, 0, -20], "look_at": [0, 0, 10], "up": [0, 1, 0],
+                    "vertical_fov_degrees": 45, "resolution": [resolution, resolution] },
+        "medium": { "kind": "expression", "sigma_t": wave, "majorant": majorant * (1.0 + 1e-12),
+                    "bounds": { "sphere": { "center": [0, 0, 10], "radius": 10 } },
+                    "albedo": 0.9, "phase": { "kind": "hazy_mie" } },
+        "lights": lights,
+        "integrator": Value::Null,
+    }))
+}
+
+fn flights(power: u32, starts: &str) -> Value {
+    let majorant = MEAN / mean_of_wave(power) * (1.0 + 1e-12);
+    json!({ "kind": "single_scattering", "sampling": "attenuation", "samples_per_ray": 1,
+            "estimator": { "kind": "line_integral", "majorant": majorant, "splits": FLIGHTS }, "starts": starts,
+            "shadow": { "kind": "ray_marching", "steps": 24, "jitter": false } })
+}
+
+/// Both methods share the shadow rays' quadrature, so that what differs is the camera ray.
+fn marching(steps: u32) -> Value {
+    json!({ "kind": "single_scattering", "sampling": "attenuation", "samples_per_ray": 1,
+            "estimator": { "kind": "ray_marching", "steps": steps, "jitter": true },
+            "shadow": { "kind": "ray_marching", "steps": 24, "jitter": false } })
+}
+
+pub(super) fn study(run: &Run<'_>) -> Result<Splitting, Failure> {
+    let resolution = if run.options.quick { 24 } else { 64 };
+    let mut points = Vec::new();
+    for (k, &power) in POWERS.iter().enumerate() {
+        let subject = scene(resolution, power);
+        let seed = |m: u64| run.seed(4, 10 * k as u64 + m);
+        let measure = |integrator: Value, rays: u32, m: u64| {
+            let images =
+                subject.with("integrator", integrator).measure(rays, (seed(m), REPLICAS), &run.library);
+            run.progress.advance();
+            images
+        };
+        let equidistant = measure(flights(power, "equidistant"), RAYS, 0)?;
+        let independent = measure(flights(power, "independent"), RAYS, 1)?;
+        // As many look-ups as the flights: a step of the camera ray costs one, and 24 for each of the sixteen lights.
+        let steps = FLIGHTS;
+        let marched = measure(marching(steps), RAYS, 2)?;
+        let reference = measure(flights(power, "equidistant"), if run.options.quick { 16 } else { 96 }, 3)?;
+        let (pixels, squared_error) = reference.mean();
+        let error = |images: &Replicas| images.squared_difference(&pixels, squared_error).map(f64::sqrt);
+        points.push(Point {
+            power,
+            inhomogeneity: 1.0 / mean_of_wave(power),
+            equidistant: error(&equidistant),
+            independent: error(&independent),
+            marching: error(&marched),
+            images: [
+                ("algorithm 2, equidistant starts", equidistant),
+                ("independent starts", independent),
+                ("ray marching, jittered (biased)", marched),
+            ],
+        });
+    }
+    let section = section(&points, resolution);
+    Ok(Splitting { points, section })
+}
+
+fn section(points: &[Point], resolution: u32) -> Section {
+    let mut section = Section::new("splitting", "raab-2008 fig. 2: splitting along the primary ray");
+    section.text = vec![format!(
+        "A ball of haze (hazy Mie, albedo 0.9) of mean extinction {MEAN}, lit by sixteen point lights around it: single scattering, \
+         {resolution} x {resolution} pixels, {RAYS} camera rays per pixel with {FLIGHTS} flights each. The extinction is a plane wave \
+         ((1 + cos)/2)^p: homogeneous for p = 0, thin sheets for p = 20. The majorant over the mean extinction measures how inhomogeneous \
+         it is. Ray marching takes {FLIGHTS} jittered steps; all share the same quadrature on shadow rays, so that what differs is the \
+         camera ray. Errors are root mean squares of the difference from a long run of algorithm 2."
+    )];
+    let curve = |label: &str, value: fn(&Point) -> Measured| {
+        let marks: Vec<Mark> = points
+            .iter()
+            .map(|point| {
+                let measured = value(point);
+                Mark::measured(point.inhomogeneity, measured.value, measured.interval)
+            })
+            .collect();
+        let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
+        Curve::method(label).with_line(line).with_marks(marks)
+    };
+    let mut chart = Chart::new(
+        "splitting-error",
+        "Error from homogeneous to inhomogeneous",
+        Axis::logarithmic("majorant / mean extinction [1]"),
+        Axis::logarithmic("RMSE [radiance]"),
+    );
+    chart.curves = vec![
+        curve("equidistant starts", |point| point.equidistant),
+        curve("independent starts", |point| point.independent),
+        curve("ray marching, jittered (biased)", |point| point.marching),
+    ];
+    section.charts = vec![chart];
+    let mut table = Table::new(
+        "splitting-table",
+        "Error at equal cost",
+        "",
+        &[
+            ("p", "1"),
+            ("majorant / mean", "1"),
+            ("equidistant", "radiance"),
+            ("independent", "radiance"),
+            ("ray marching", "radiance"),
+            ("look-ups per pixel, flights", "1"),
+            ("look-ups per pixel, marching", "1"),
+        ],
+    );
+    for point in points {
+        let cell = |measured: Measured| Cell::measured(measured.value, measured.interval);
+        table.rows.push(vec![
+            Cell::Count(u64::from(point.power)),
+            Cell::Number(point.inhomogeneity),
+            cell(point.equidistant),
+            cell(point.independent),
+            cell(point.marching),
+            Cell::Number(point.images[0].1.lookups_per_pixel()),
+            Cell::Number(point.images[2].1.lookups_per_pixel()),
+        ]);
+    }
+    section.tables = vec![table];
+    let shown = points.iter().filter(|point| SHOWN.contains(&point.power));
+    section.galleries = vec![Gallery {
+        id: "splitting-images".to_owned(),
+        title: "Homogeneous and highly inhomogeneous".to_owned(),
+        caption: "One image of each measurement.".to_owned(),
+        rows: shown
+            .map(|point| GalleryRow {
+                label: format!("p = {}", point.power),
+                pictures: point
+                    .images
+                    .iter()
+                    .zip([point.equidistant, point.independent, point.marching])
+                    .enumerate()
+                    .map(|(m, ((label, images), rmse))| Picture {
+                        id: format!("splitting-{}-{m}", point.power),
+                        label: (*label).to_owned(),
+                        lines: vec![format!("RMSE {:.4}", rmse.value)],
+                        resolution: images.first().resolution(),
+                        pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure: 1.0 },
+                    })
+                    .collect(),
+            })
+            .collect(),
+    }];
+    section
+}

@@ -1,0 +1,77 @@
+//! Fig. 1: first collisions from independent and from equidistant variates.
+
+use super::Run;
+use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
+use fairflight_sources::{Seeded, UniformSource};
+
+/// First collisions that are shown.
+const POINTS: u32 = 16;
+/// Majorant optical thickness of the ray.
+const THICKNESS: f64 = 3.0;
+/// Sets from which spacings are measured.
+const SETS: u32 = 20_000;
+
+/// The distances of one set, over the length of the ray: −ln(1 − u p_V)/thickness.
+fn set(equidistant: bool, source: &mut Seeded) -> Vec<f64> {
+    let collides = -(-THICKNESS).exp_m1();
+    let shift = source.next_uniform();
+    (0..POINTS)
+        .map(|k| {
+            let u =
+                if equidistant { (f64::from(k) + shift) / f64::from(POINTS) } else { source.next_uniform() };
+            -(-u * collides).ln_1p() / THICKNESS
+        })
+        .collect()
+}
+
+/// The mean over sets of the greatest gap between neighbouring variates, in units of the mean gap.
+fn greatest_gap(equidistant: bool, source: &mut Seeded) -> f64 {
+    let collides = -(-THICKNESS).exp_m1();
+    let sum: f64 = (0..SETS)
+        .map(|_| {
+            let mut variates: Vec<f64> =
+                set(equidistant, source).into_iter().map(|t| -(-THICKNESS * t).exp_m1() / collides).collect();
+            variates.sort_unstable_by(f64::total_cmp);
+            let inner = variates.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+            f64::from(POINTS) * inner.max(variates[0]).max(1.0 - variates[variates.len() - 1])
+        })
+        .sum();
+    sum / f64::from(SETS)
+}
+
+pub(super) fn section(run: &Run<'_>) -> Section {
+    let mut source = Seeded::new(run.seed(3, 0));
+    let mut chart = Chart::new(
+        "starts-points",
+        "First collisions along a ray",
+        Axis::linear("distance / length of the ray [1]"),
+        Axis::linear("independent 1 to 4, equidistant 5 to 8").within(0.0, 9.0),
+    );
+    chart.caption = format!(
+        "Four sets of {POINTS} first collisions of each kind, majorant optical thickness {THICKNESS}: the points from which the flights of \
+         algorithm 2 start."
+    );
+    let mut curve = |label: &str, equidistant: bool, rows: std::ops::Range<u32>| {
+        let marks = rows.flat_map(|row| {
+            set(equidistant, &mut source)
+                .into_iter()
+                .map(move |t| Mark::at(t, f64::from(row)))
+                .collect::<Vec<_>>()
+        });
+        Curve::method(label).with_marks(marks.collect::<Vec<_>>())
+    };
+    chart.curves = vec![curve("independent", false, 1..5), curve("equidistant", true, 5..9)];
+    let mut table = Table::new(
+        "starts-gaps",
+        "How even the starts are",
+        "In variates, where both kinds are uniform: the greatest gap of a set over the mean gap, averaged over 20 000 sets.",
+        &[("starts", ""), ("greatest gap / mean gap", "1")],
+    );
+    for (label, equidistant) in [("independent", false), ("equidistant", true)] {
+        table.rows.push(vec![Cell::text(label), Cell::Number(greatest_gap(equidistant, &mut source))]);
+    }
+    let mut section = Section::new("starts", "raab-2008 fig. 1: where flights start");
+    section.charts = vec![chart];
+    section.tables = vec![table];
+    section
+}
