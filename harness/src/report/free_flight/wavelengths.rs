@@ -10,9 +10,9 @@ use fairflight_stats::{ClosedMoments, Reference, Scores, Verdict, judge};
 /// σ₂/σ₁, with σ₁ = 1.
 const RATIOS: [f64; 10] = [0.25, 0.5, 0.8, 1.0, 1.1, 1.3, 1.5, 1.7, 1.9, 1.99];
 /// Those from which on the variance is infinite.
-const INFINITE: [f64; 3] = [2.0, 2.1, 3.0];
+const INFINITE: [f64; 3] = [2.0, 2.5, 4.0];
 /// Samples over which the sample variance is followed.
-const GROWING: [u64; 4] = [1 << 12, 1 << 15, 1 << 18, 1 << 21];
+const GROWING: [u64; 4] = [1 << 12, 1 << 16, 1 << 20, 1 << 24];
 
 pub(super) fn steps() -> u64 {
     (RATIOS.len() + INFINITE.len()) as u64
