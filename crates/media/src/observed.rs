@@ -14,7 +14,6 @@ pub struct Observed<M> {
     lookups: Cell<u64>,
     lowest: Cell<f64>,
     highest: Cell<f64>,
-    /// A sum that is NaN as soon as one value was.
     finite: Cell<bool>,
 }
 
@@ -45,6 +44,19 @@ impl<M> Observed<M> {
         self.finite.get()
     }
 
+    #[cold]
+    fn widen(&self, sigma_t: f64) {
+        if sigma_t > self.highest.get() {
+            self.highest.set(sigma_t);
+        }
+        if sigma_t < self.lowest.get() {
+            self.lowest.set(sigma_t);
+        }
+        if !sigma_t.is_finite() {
+            self.finite.set(false);
+        }
+    }
+
     /// The medium that is observed.
     pub fn medium(&self) -> &M {
         &self.medium
@@ -59,14 +71,9 @@ impl<M: Medium> Medium for Observed<M> {
     fn sigma_t_local(&self, point: DVec3) -> f64 {
         let sigma_t = self.medium.sigma_t_local(point);
         self.lookups.set(self.lookups.get() + 1);
-        if sigma_t > self.highest.get() {
-            self.highest.set(sigma_t);
-        }
-        if sigma_t < self.lowest.get() {
-            self.lowest.set(sigma_t);
-        }
-        if !sigma_t.is_finite() {
-            self.finite.set(false);
+        // NaN is in no range, and soon nothing else is outside.
+        if !(self.lowest.get()..=self.highest.get()).contains(&sigma_t) {
+            self.widen(sigma_t);
         }
         sigma_t
     }

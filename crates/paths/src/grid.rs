@@ -125,7 +125,8 @@ fn corners(bounds: &Bounds) -> (DVec3, DVec3) {
 
 impl SamplingExtinction for Grid {
     /// From cell to cell (amanatides-1987); the depth that is left when a cell's share is passed goes on into the next.
-    #[inline]
+    // Never inlined: where a grid is one of several sampling extinctions, its loop would take the registers of the others.
+    #[inline(never)]
     fn fly(&self, line: &Line, from: f64, length: f64, depth: f64) -> Option<(f64, f64)> {
         let start = (line.at(from) - self.min) * self.per_length;
         let slope = line.direction * self.per_length;

@@ -54,6 +54,21 @@ const PARTICLES: usize = 512;
 const SETTLING: u32 = 20;
 const MEASURED: u32 = 30;
 
+/// Whether the bounds of the medium alone tell that the squared energy of a walk grows nowhere: 0 ≤ r ≤ 2/(1 + a) at every collision, so
+/// that q_sum = a r + |1 − r| ≤ 1, and no gain. Where they do not tell, it is for [`second_moment_growth`] to measure.
+pub fn grows_nowhere<M, P, C, R>(volume: &Volume<M, P, C>, walk: &Walk<R>) -> bool
+where
+    M: Medium,
+    C: Spectrum,
+    R: SamplingExtinction,
+{
+    let albedo = volume.albedo.max_channel();
+    let most = 2.0 / (1.0 + albedo) * walk.sampling().lowest();
+    albedo <= 1.0
+        && volume.medium.lower_bound().is_some_and(|bound| bound >= 0.0)
+        && volume.medium.upper_bound().is_some_and(|bound| bound <= most)
+}
+
 /// Estimates the growth in `volume` by power iteration, as neutron transport estimates a multiplication factor: a population of
 /// particles makes one collision at a time; each then counts E\[W²\] of its branches, and as many particles as before are
 /// chosen in proportion to what they count. The mean count over the generations is the factor.
@@ -223,6 +238,21 @@ mod tests {
         let growth = growth(1.0, 1e9, 1.2, 1.0, Version::NonTerminating);
         assert!((growth.factor - 1.44).abs() < 1e-9, "{growth:?}");
         assert_eq!(growth.criticality(), Criticality::Supercritical);
+    }
+
+    #[test]
+    fn bounds_tell_where_nothing_can_grow() {
+        let nowhere = |albedo: f64, sigma_samp: f64| {
+            let volume = Volume {
+                medium: Homogeneous::new(1.0).unwrap(),
+                bounds: Bounds::sphere(DVec3::ZERO, 1.0).unwrap(),
+                albedo,
+                phase: Isotropic,
+            };
+            grows_nowhere(&volume, &Walk::new(Version::Adaptive, Uniform::new(sigma_samp).unwrap()))
+        };
+        assert!(nowhere(0.7, 1.0) && nowhere(1.0, 1.0) && nowhere(0.0, 0.5) && nowhere(0.6, 0.81));
+        assert!(!nowhere(0.6, 0.79) && !nowhere(1.0, 0.99) && !nowhere(1.2, 2.0));
     }
 
     #[test]

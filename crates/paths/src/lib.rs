@@ -44,7 +44,7 @@ mod splitting;
 mod walk;
 
 pub use grid::{Grid, GridError};
-pub use growth::{Criticality, Growth, second_moment_growth};
+pub use growth::{Criticality, Growth, grows_nowhere, second_moment_growth};
 pub use integrator::Integrator;
 pub use particle_tracer::{Attenuation, ParticleTracer};
 pub use photon_tracer::PhotonTracer;

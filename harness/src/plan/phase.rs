@@ -44,7 +44,7 @@ impl AnyPhase {
 }
 
 impl PhaseFunction for AnyPhase {
-    #[inline(never)]
+    #[inline]
     fn eval(&self, cosine: f64) -> f64 {
         match self {
             Self::Isotropic(phase) => phase.eval(cosine),
@@ -55,7 +55,7 @@ impl PhaseFunction for AnyPhase {
         }
     }
 
-    #[inline(never)]
+    #[inline]
     fn sample_cosine(&self, u: f64) -> f64 {
         match self {
             Self::Isotropic(phase) => phase.sample_cosine(u),

@@ -6,7 +6,7 @@ use crate::spec::{SamplingFieldSpec, WalkSpec};
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
 use fairflight_media::{Bounds, Line, LineThickness, Medium, PhaseFunction};
 use fairflight_paths::{
-    Criticality, Grid, GridError, SamplingExtinction, Uniform, Walk, second_moment_growth,
+    Criticality, Grid, GridError, SamplingExtinction, Uniform, Walk, grows_nowhere, second_moment_growth,
 };
 use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::{Seeded, derive_seed};
@@ -108,6 +108,9 @@ impl WalkPlan {
         P: PhaseFunction,
         C: Spectrum,
     {
+        if grows_nowhere(volume, &self.walk()) {
+            return Ok(None);
+        }
         let mut source = Seeded::new(derive_seed(seed, GROWTH_STREAM));
         let Some(growth) = second_moment_growth(volume, &self.walk(), &mut source) else { return Ok(None) };
         let measured = format!(
