@@ -40,6 +40,55 @@ fn the_quick_report_is_complete_and_says_where_it_comes_from() {
     }
 }
 
+/// A quick report that is a document: its results, and the ledger without what depends on time.
+fn document(name: &str, threads: &str) -> (Value, Vec<[String; 3]>) {
+    let parent = tempfile::tempdir().expect("a temporary folder");
+    let folder = parent.path().join(name);
+    let path = folder.to_str().expect("UTF-8");
+    let outcome = harness(&["report", name, "--quick", "--threads", threads, "--out", path], "");
+    assert_eq!((outcome.code, outcome.stdout.as_str()), (0, ""), "{}", outcome.stderr);
+    assert_eq!(names(parent.path()), [name]);
+    let text = fs::read_to_string(folder.join("results.json")).expect("results");
+    let results: Value = serde_json::from_str(&text).expect("JSON");
+    let files = names(&folder);
+    for file in ["index.html", "tables.md"] {
+        assert!(files.iter().any(|name| name == file), "{file} is missing");
+    }
+    let claims = results["claims"].as_array().expect("claims");
+    let words = |claim: &Value, key: &str| claim[key].as_str().expect("words").to_owned();
+    let ledger = claims.iter().map(|claim| ["id", "verdict", "measured"].map(|key| words(claim, key)));
+    let ledger = ledger.collect();
+    (results, ledger)
+}
+
+#[test]
+fn the_report_on_single_scattering_says_the_same_on_any_number_of_threads() {
+    let (results, ledger) = document("single-scattering", "1");
+    assert_eq!(ledger[0][0], "S9");
+    // No unbiased method has another mean than the closed form.
+    assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
+    assert_eq!(document("single-scattering", "3").1, ledger);
+}
+
+#[test]
+fn the_report_on_free_flight_finds_no_broken_law() {
+    let (results, ledger) = document("free-flight", "2");
+    assert_eq!(ledger.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(), ["R1", "R2", "R3"]);
+    assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
+    assert_ne!(ledger[0][1], "does_not_hold");
+    assert_ne!(ledger[2][1], "does_not_hold");
+}
+
+#[test]
+fn the_report_on_particle_tracing_has_its_sections() {
+    let (results, ledger) = document("particle-tracing", "2");
+    assert_eq!(ledger.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(), ["S5", "S6"]);
+    assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
+    let sections: Vec<&str> =
+        results["sections"].as_array().expect("sections").iter().filter_map(|s| s["id"].as_str()).collect();
+    assert_eq!(sections, ["even-versions", "sun-versions", "noise", "speed", "growth"]);
+}
+
 #[test]
 fn what_cannot_be_written_is_said_before_anything_is_measured() {
     let parent = tempfile::tempdir().expect("a temporary folder");

@@ -1,8 +1,8 @@
 //! What distances look like: the density of the first collision, sampled with and without weights, and what that costs.
 
-use super::Run;
 use crate::Failure;
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
+use crate::report::run::Run;
 use fairflight_collision::Version;
 use fairflight_freeflight::{Flight, FreeFlight, Newton, Tracking, Woodcock};
 use fairflight_media::{AnalyticCosine, Constant, Counted, Extinction, OpticalThickness, Ray};
@@ -93,7 +93,7 @@ where
             (mean * per_cell, ((square / n - mean * mean) / n).sqrt() * per_cell)
         })
         .collect();
-    run.progress.advance();
+    run.advance();
     Histogram {
         name: name.to_owned(),
         cells,

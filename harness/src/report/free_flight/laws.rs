@@ -1,7 +1,7 @@
 //! Every sampler of distances on every medium, by the law that `harness verify` checks too.
 
-use super::Run;
 use crate::report::document::{Cell, Section, Table};
+use crate::report::run::Run;
 use fairflight_laws::{Check, CheckResult, Effort, catalogue};
 use fairflight_stats::sidak_level;
 use rayon::prelude::*;
@@ -34,7 +34,7 @@ pub(super) fn study(run: &Run<'_>) -> Laws {
         .with_max_len(1)
         .map(|check| {
             let result = check.run(effort, run.seed(1, 0), alpha);
-            run.progress.advance();
+            run.advance();
             (check.id.clone(), result)
         })
         .collect();

@@ -7,38 +7,22 @@ mod splitting;
 mod starts;
 mod wavelengths;
 
-use crate::plan::MediumLibrary;
 use crate::report::document::{Document, Options};
-use crate::report::progress::Progress;
+use crate::report::run::Run;
 use crate::{Environment, Failure};
-use fairflight_sources::derive_seed;
 use std::time::Instant;
-
-/// What the parts of the study share.
-struct Run<'a> {
-    options: &'a Options,
-    library: MediumLibrary,
-    progress: Progress,
-}
-
-impl Run<'_> {
-    /// A seed of its own for each measurement of each part.
-    fn seed(&self, part: u64, measurement: u64) -> u64 {
-        derive_seed(derive_seed(self.options.seed, part), measurement)
-    }
-}
 
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
     let clock = Instant::now();
     let steps = laws::steps() + distances::steps() + wavelengths::steps() + splitting::steps();
-    let run = Run { options, library: MediumLibrary::default(), progress: Progress::new(environment, steps) };
+    let run = Run::new(options, environment, steps);
     let laws = laws::study(&run);
     let distances = distances::study(&run)?;
     let starts = starts::section(&run);
     let splitting = splitting::study(&run)?;
     let wavelengths = wavelengths::study(&run)?;
-    run.progress.finish();
+    run.finish();
     let mut document = Document::new(
         "free-flight",
         "Free flight, line integrals, wavelengths",

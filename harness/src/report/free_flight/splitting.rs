@@ -1,12 +1,13 @@
 //! Fig. 2: splitting along the primary ray by algorithm 2, from equidistant and from independent starts, from a homogeneous to a
 //! highly inhomogeneous hazy medium, beside ray marching at as many look-ups.
 
-use super::Run;
 use crate::Failure;
 use crate::report::document::{
-    Axis, Cell, Chart, Curve, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
+    Axis, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
 };
 use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::run::Run;
+use crate::report::speed::curve as joined;
 use serde_json::{Value, json};
 
 /// Powers of the wave: the higher, the less homogeneous.
@@ -116,7 +117,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Splitting, Failure> {
             let shown = SHOWN
                 .contains(&power)
                 .then(|| ball.with("integrator", integrator).measure(RAYS, (seed(1), 2), &run.library));
-            run.progress.advance();
+            run.advance();
             Ok::<_, Failure>(Method { window: measured, image: shown.transpose()? })
         };
         let equidistant = method(flights(power, "equidistant"), 0)?;
@@ -164,8 +165,7 @@ fn section(points: &[Point]) -> Section {
                 Mark::measured(point.inhomogeneity, measured.value, measured.interval)
             })
             .collect();
-        let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
-        Curve::method(label).with_line(line).with_marks(marks)
+        joined(label, marks)
     };
     let mut chart = Chart::new(
         "splitting-error",

@@ -1,7 +1,7 @@
 //! Fig. 1: first collisions from independent and from equidistant variates.
 
-use super::Run;
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
+use crate::report::run::Run;
 use fairflight_sources::{Seeded, UniformSource};
 
 /// First collisions that are shown.

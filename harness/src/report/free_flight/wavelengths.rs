@@ -1,8 +1,8 @@
 //! Section 3.2: one distance for two wavelengths.
 
-use super::Run;
 use crate::Failure;
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
+use crate::report::run::Run;
 use fairflight_laws::measure;
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_stats::{ClosedMoments, Reference, Scores, Verdict, judge};
@@ -85,7 +85,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Wavelengths, Failure> {
             interval: [variance - 1.96 * error, variance + 1.96 * error],
             verdict,
         });
-        run.progress.advance();
+        run.advance();
     }
     let mut growing = Vec::new();
     for (k, &ratio) in INFINITE.iter().enumerate() {
@@ -96,7 +96,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Wavelengths, Failure> {
             variances.push(moments.sample_variance().unwrap_or(f64::NAN));
         }
         growing.push((ratio, variances));
-        run.progress.advance();
+        run.advance();
     }
     let unsound = points
         .iter()

@@ -1,9 +1,9 @@
 //! S5 and S6 of the ledger, and the findings of the report.
 
 use super::equal_cost::EqualCost;
-use super::speed::Speed;
 use super::versions::{Sweep, Versions};
 use crate::report::result::{Claim, ClaimVerdict};
+use crate::report::speed::Speed;
 
 /// S5: beyond the greatest extinction the variance does not fall, look-ups grow, and the best figure of merit is below it.
 ///
@@ -93,11 +93,7 @@ pub(super) fn summary(even: &Versions, sun: &Versions, noise: &EqualCost, speed:
     };
     let all = |versions: &Versions| versions.sweeps.iter().map(optimum).collect::<Vec<_>>().join(", ");
     let (best, range) = noise.optimum();
-    let fastest = speed
-        .integrators
-        .iter()
-        .max_by(|a, b| a.per_second.value.total_cmp(&b.per_second.value))
-        .expect("there are integrators");
+    let fastest = speed.fastest();
     vec![
         format!(
             "Best figure of merit on eq. 21, even environment: {}. Sky with a sun: {}.",

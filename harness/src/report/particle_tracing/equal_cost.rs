@@ -1,11 +1,13 @@
 //! Fig. 7: twelve octaves of noise at 500 look-ups per pixel, whatever the sampling extinction.
 
-use super::{REPLICAS, Run, scenes};
+use super::{REPLICAS, scenes};
 use crate::Failure;
 use crate::report::document::{
-    Axis, Band, Cell, Chart, Curve, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table, Vertical,
+    Axis, Band, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table, Vertical,
 };
 use crate::report::replicas::{Measured, Replicas};
+use crate::report::run::Run;
+use crate::report::speed::curve;
 
 /// Sampling extinctions; the greatest extinction is 1, that of the larger dense regions about 0.6.
 const SAMPLING: [f64; 9] = [0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.85, 1.0];
@@ -64,7 +66,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<EqualCost, Failure> {
         let to_budget = image.lookups_per_pixel() / budget;
         let rmse = image.squared_error().map(|error| (error * to_budget).sqrt());
         points.push(Point { sigma_samp, rmse, image });
-        run.progress.advance();
+        run.advance();
     }
     let section = section(&points, budget, resolution);
     Ok(EqualCost { points, section })
@@ -93,8 +95,7 @@ fn section(points: &[Point], budget: f64, resolution: u32) -> Section {
         .iter()
         .map(|point| Mark::measured(point.sigma_samp, point.rmse.value, point.rmse.interval))
         .collect();
-    let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
-    chart.curves = vec![Curve::method("adaptive").with_line(line).with_marks(marks)];
+    chart.curves = vec![curve("adaptive", marks)];
     chart.verticals = vec![
         Vertical { x: 0.6, label: "dense regions".to_owned() },
         Vertical { x: 1.0, label: "greatest σ_t".to_owned() },

@@ -1,8 +1,8 @@
 //! Where a walk has a second moment.
 
-use super::Run;
 use crate::Failure;
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table, Vertical};
+use crate::report::run::Run;
 use fairflight_collision::Version;
 use fairflight_media::phase::{Isotropic, Rayleigh};
 use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, Medium, PhaseFunction};
@@ -88,7 +88,7 @@ fn measure<M: Medium, P: PhaseFunction>(
         if let Some(growth) = growth {
             rows.push(Row { medium, ratio, growth, closed_form: closed_form(ratio) });
         }
-        run.progress.advance();
+        run.advance();
     }
     Ok(())
 }

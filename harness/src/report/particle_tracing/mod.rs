@@ -7,36 +7,10 @@ mod scenes;
 mod speed;
 mod versions;
 
-use crate::plan::MediumLibrary;
 use crate::report::document::{Document, Options};
-use crate::report::progress::Progress;
+use crate::report::run::Run;
 use crate::{Environment, Failure};
 use std::time::Instant;
-
-/// What the parts of the study share.
-struct Run<'a> {
-    options: &'a Options,
-    library: MediumLibrary,
-    progress: Progress,
-}
-
-impl Run<'_> {
-    /// A seed of its own for each measurement of each part.
-    fn seed(&self, part: u64, measurement: u64) -> u64 {
-        use fairflight_sources::derive_seed;
-        derive_seed(derive_seed(self.options.seed, part), measurement)
-    }
-
-    /// Samples per pixel: fewer where it must be quick.
-    fn samples(&self, full: u32) -> u32 {
-        if self.options.quick { (full / 8).max(2) } else { full }
-    }
-
-    /// Columns and rows of all images.
-    fn resolution(&self) -> u32 {
-        if self.options.quick { 48 } else { 128 }
-    }
-}
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 4;
@@ -45,13 +19,13 @@ const REPLICAS: u32 = 4;
 pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
     let clock = Instant::now();
     let steps = versions::steps() * 2 + equal_cost::steps() + speed::steps() + growth::steps();
-    let run = Run { options, library: MediumLibrary::default(), progress: Progress::new(environment, steps) };
+    let run = Run::new(options, environment, steps);
     let even = versions::study(&run, versions::Lighting::Even)?;
     let sun = versions::study(&run, versions::Lighting::Sun)?;
     let noise = equal_cost::study(&run)?;
     let speed = speed::study(&run)?;
     let growth = growth::study(&run)?;
-    run.progress.finish();
+    run.finish();
     let mut document = Document::new(
         "particle-tracing",
         "Particle tracing with any sampling extinction",

@@ -1,9 +1,9 @@
 //! Speed against error: all integrators of multiple scattering on one scene.
 
-use super::{REPLICAS, Run, scenes};
+use super::scenes;
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
-use crate::report::replicas::Measured;
+use crate::report::run::Run;
+use crate::report::speed::{Speed, compare};
 use serde_json::{Value, json};
 
 /// Rays per pixel of the points of a curve.
@@ -34,81 +34,9 @@ pub(super) fn steps() -> u64 {
     (integrators().len() * RAYS.len()) as u64
 }
 
-/// One integrator at its largest number of rays.
-pub(super) struct Fastest {
-    pub(super) name: &'static str,
-    /// 1/(MSE · CPU seconds).
-    pub(super) per_second: Measured,
-    pub(super) per_lookup: Measured,
-}
-
-pub(super) struct Speed {
-    pub(super) section: Section,
-    pub(super) integrators: Vec<Fastest>,
-}
-
 pub(super) fn study(run: &Run<'_>) -> Result<Speed, Failure> {
     let subject = scenes::evenly_lit(run.resolution());
-    let (mut by_lookups, mut by_seconds, mut fastest) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, (name, integrator)) in integrators().into_iter().enumerate() {
-        let subject = subject.with("integrator", integrator);
-        let (mut lookups, mut seconds) = (Vec::new(), Vec::new());
-        let mut last = None;
-        for (k, &rays) in RAYS.iter().enumerate() {
-            let seed = run.seed(30 + i as u64, k as u64);
-            let image = subject.measure(run.samples(rays), (seed, REPLICAS), &run.library)?;
-            let error = image.squared_error();
-            let rmse = error.map(f64::sqrt);
-            lookups.push(Mark::measured(image.lookups_per_pixel(), rmse.value, rmse.interval));
-            seconds.push(Mark::measured(image.seconds(), rmse.value, rmse.interval));
-            let (cost, per_pixel) = (image.seconds(), image.lookups_per_pixel());
-            last = Some(Fastest {
-                name,
-                per_second: error.map(|error| 1.0 / (error * cost)),
-                per_lookup: error.map(|error| 1.0 / (error * per_pixel)),
-            });
-            run.progress.advance();
-        }
-        fastest.extend(last);
-        let curve = |marks: Vec<Mark>| {
-            let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
-            Curve::method(name).with_line(line).with_marks(marks)
-        };
-        by_lookups.push(curve(lookups));
-        by_seconds.push(curve(seconds));
-    }
-    let mut section = Section::new("speed", "Speed against error");
-    section.text = vec![
-        "The scene of fig. 6 in an even environment, by every integrator of multiple scattering. Seconds are CPU seconds over all threads, \
-         look-ups counted; the figures of the table are those of the largest number of rays."
-            .to_owned(),
-    ];
-    let chart = |id: &str, title: &str, x: &str, curves: Vec<Curve>| {
-        let mut chart = Chart::new(id, title, Axis::logarithmic(x), Axis::logarithmic("RMSE [radiance]"));
-        chart.curves = curves;
-        chart
-    };
-    section.charts = vec![
-        chart("speed-lookups", "Error against look-ups", "look-ups per pixel [1]", by_lookups),
-        chart("speed-seconds", "Error against time", "CPU seconds of an image [s]", by_seconds),
-    ];
-    let mut table = Table::new(
-        "speed-table",
-        "Efficiency",
-        "Per CPU second: on two cores an image takes half of that time.",
-        &[
-            ("integrator", ""),
-            ("1/(MSE · CPU s)", "1/(radiance² s)"),
-            ("1/(MSE · look-ups per pixel)", "1/radiance²"),
-        ],
-    );
-    for row in &fastest {
-        table.rows.push(vec![
-            Cell::text(row.name),
-            Cell::measured(row.per_second.value, row.per_second.interval),
-            Cell::measured(row.per_lookup.value, row.per_lookup.interval),
-        ]);
-    }
-    section.tables = vec![table];
-    Ok(Speed { section, integrators: fastest })
+    let text = "The scene of fig. 6 in an even environment, by every integrator of multiple scattering. Seconds are CPU seconds over all \
+                threads, look-ups counted; the figures of the table are those of the largest number of rays.";
+    compare(run, (&subject, 30), integrators(), &RAYS, text)
 }

@@ -1,11 +1,13 @@
 //! Fig. 6: the three versions of the single particle model over the sampling extinction, at 100 rays per pixel.
 
-use super::{REPLICAS, Run, scenes};
+use super::{REPLICAS, scenes};
 use crate::Failure;
 use crate::report::document::{
-    Axis, Band, Cell, Chart, Curve, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table, Vertical,
+    Axis, Band, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table, Vertical,
 };
 use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::run::Run;
+use crate::report::speed::curve as joined;
 
 /// What lights the medium.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +113,7 @@ pub(super) fn study(run: &Run<'_>, lighting: Lighting) -> Result<Versions, Failu
                 let seed = run.seed(lighting as u64, (v * SAMPLING.len() + k) as u64);
                 points.push(point(run, &subject, (key, sigma_samp), seed)?);
             }
-            run.progress.advance();
+            run.advance();
         }
         sweeps.push(Sweep { name, points });
     }
@@ -150,10 +152,7 @@ fn section(run: &Run<'_>, lighting: Lighting, sweeps: &[Sweep]) -> Section {
     )];
     let x = || Axis::logarithmic("σ_samp [1/length]");
     let curve = |sweep: &Sweep, value: fn(&Point) -> Mark| {
-        let marks: Vec<Mark> = sweep.points.iter().map(value).collect();
-        Curve::method(sweep.name)
-            .with_line(marks.iter().map(|mark| (mark.x, mark.y)).collect::<Vec<_>>())
-            .with_marks(marks)
+        joined(sweep.name, sweep.points.iter().map(value).collect())
     };
     let error = |point: &Point| {
         Mark::measured(point.sigma_samp, point.squared_error.value, point.squared_error.interval)

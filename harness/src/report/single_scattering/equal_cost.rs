@@ -1,10 +1,11 @@
 //! Fig. 12: all methods at equal look-ups per pixel.
 
 use super::methods::{self, Method};
-use super::{Lighting, REPLICAS, Run};
+use super::{Lighting, REPLICAS};
 use crate::Failure;
 use crate::report::document::{Cell, Gallery, GalleryRow, Picture, Pixels, Section, Table};
 use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::run::Run;
 
 /// Look-ups per pixel, averaged over all, as in the paper.
 pub(super) const BUDGETS: [f64; 2] = [300.0, 50.0];
@@ -64,7 +65,7 @@ pub(super) fn study(run: &Run<'_>, lighting: Lighting) -> Result<Study, Failure>
         (run.seed(lighting as u64, 0), REPLICAS),
         &run.library,
     )?;
-    run.progress.advance();
+    run.advance();
     let (pixels, squared_error) = shown.mean();
     let reference = Reference { pixels, squared_error, shown };
     let (mut budgets, mut unsound) = (Vec::new(), Vec::new());
@@ -77,7 +78,7 @@ pub(super) fn study(run: &Run<'_>, lighting: Lighting) -> Result<Study, Failure>
             let entry = entry(run, &subject, method, (lookups, seed), &reference)?;
             unsound.extend(bias(&entry, &reference, lighting));
             entries.push(entry);
-            run.progress.advance();
+            run.advance();
         }
         budgets.push(Budget { lookups, entries });
     }

@@ -65,9 +65,11 @@ pub(super) fn all(budget: f64) -> Vec<Method> {
         flights("algorithm 2, 4 flights", 4),
         sampled("attenuation", "attenuation", 1),
         sampled("attenuation, resampled", "attenuation_resampled", 1),
+        sampled("attenuation, resampled, 4", "attenuation_resampled", 4),
         sampled("source", "source", 2),
         sampled("scattering", "scattering", 2),
         sampled("source and scattering", "source_and_scattering", 1),
+        sampled("source and scattering, 4 + 4", "source_and_scattering", 4),
     ]
 }
 

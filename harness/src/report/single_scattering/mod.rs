@@ -5,33 +5,12 @@ mod equal_cost;
 mod methods;
 mod speed;
 
-use crate::plan::MediumLibrary;
 use crate::report::document::{Document, Options};
-use crate::report::progress::Progress;
 use crate::report::replicas::Subject;
+use crate::report::run::Run;
 use crate::{Environment, Failure};
-use fairflight_sources::derive_seed;
 use serde_json::{Value, json};
 use std::time::Instant;
-
-/// What the parts of the study share.
-struct Run<'a> {
-    options: &'a Options,
-    library: MediumLibrary,
-    progress: Progress,
-}
-
-impl Run<'_> {
-    /// A seed of its own for each measurement of each part.
-    fn seed(&self, part: u64, measurement: u64) -> u64 {
-        derive_seed(derive_seed(self.options.seed, part), measurement)
-    }
-
-    /// Columns and rows of all images.
-    fn resolution(&self) -> u32 {
-        if self.options.quick { 48 } else { 128 }
-    }
-}
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 4;
@@ -92,13 +71,13 @@ impl Lighting {
 pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
     let clock = Instant::now();
     let steps = equal_cost::steps() + speed::steps();
-    let run = Run { options, library: MediumLibrary::default(), progress: Progress::new(environment, steps) };
+    let run = Run::new(options, environment, steps);
     let mut studies = Vec::new();
     for lighting in Lighting::ALL {
         studies.push(equal_cost::study(&run, lighting)?);
     }
     let speed = speed::study(&run)?;
-    run.progress.finish();
+    run.finish();
     let claims = vec![claims::s9(&studies)];
     let mut document = Document::new(
         "single-scattering",
