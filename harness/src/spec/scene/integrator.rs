@@ -71,7 +71,7 @@ pub struct WalkSpec {
     pub sampling: SamplingFieldSpec,
     /// What is decided once for all channels.
     pub colour: Collisions,
-    /// More collisions of one particle are cut off.
+    /// More collisions of one particle are cut off, a bias; by default none are.
     pub max_collisions: u64,
     /// Whether a walk may be run that has no second moment.
     pub allow_supercritical: bool,
@@ -142,8 +142,6 @@ impl Strategy {
     ];
 }
 
-/// A walk of more collisions than this has gone astray.
-const MOST_COLLISIONS: u64 = 1_000_000;
 /// More points per ray or pixels per control are a slip of the keyboard.
 const MOST: u64 = 1_000_000;
 /// More cells take minutes to fit.
@@ -218,7 +216,7 @@ impl WalkSpec {
             version: read_version(&object.required("version")?)?,
             sampling: SamplingFieldSpec::read(&object.required("sigma_samp")?)?,
             colour: named_or(object, "colour", &colours)?,
-            max_collisions: most.map_or(Ok(MOST_COLLISIONS), |node| node.integer(1, u64::MAX))?,
+            max_collisions: most.map_or(Ok(u64::MAX), |node| node.integer(1, u64::MAX))?,
             allow_supercritical: allow.map_or(Ok(false), |node| node.boolean())?,
         })
     }
