@@ -23,7 +23,7 @@ estimators     woodcock          majorant                   raab-2008 algorithm 
                line_integral     majorant, splits           raab-2008 algorithm 2
                ray_marching      steps, jitter              a biased baseline
 versions       terminating, non_terminating, adaptive
-sigma_samp     a number, or an object of edges and values
+sigma_samp     a number, or an object of edges and values; of walks in a scene a number, or cells, factor and floor
 controls       none
                constant          sigma_main
                piecewise_linear  positions, sigma_main
@@ -33,7 +33,7 @@ integrators    transmittance     estimator
                                  [allow_supercritical]      szirmay-kalos-2017 4.1
                line_splitting    majorant, splits, [starts], and those of particle_tracer
                                                             raab-2008 3.1
-               single_scattering sampling, estimator, samples_per_ray, [heuristic], [shadow], [shared_explorers]
+               single_scattering sampling, estimator, samples_per_ray, [heuristic], [shadow], [shared_explorers], [starts]
                                                             szirmay-kalos-2017 4.3
 sampling       attenuation, attenuation_resampled, source, scattering, source_and_scattering, attenuation_and_source,
                attenuation_and_scattering
