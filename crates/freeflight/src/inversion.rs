@@ -1,8 +1,8 @@
 //! Inversion of the optical thickness in closed form (szirmay-kalos-2017 eq. 3 and 4).
 
-use crate::theory::{HIGHEST_MOMENT, unweighted_collided, unweighted_escaped};
+use crate::theory::HIGHEST_MOMENT;
 use crate::{ClosedForm, Flight, FreeFlight};
-use fairflight_media::{Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{Extinction, InvertOpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// The distance at which the optical thickness reaches −ln(1 − u).
@@ -30,17 +30,6 @@ impl<F: InvertOpticalThickness> FreeFlight<F> for Inversion {
 }
 
 impl<F: Extinction> ClosedForm<F> for Inversion {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        unweighted_collided(quadrature, tolerance, score)
-    }
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        unweighted_escaped(quadrature, tolerance)
-    }
     fn lookups(
         &self,
         _quadrature: &mut RayQuadrature<F>,

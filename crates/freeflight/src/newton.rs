@@ -1,9 +1,9 @@
 //! Numerical inversion of an optical thickness in closed form (szirmay-kalos-2017 eq. 4).
 
 use crate::root::crossing;
-use crate::theory::{HIGHEST_MOMENT, unweighted_collided, unweighted_escaped};
+use crate::theory::HIGHEST_MOMENT;
 use crate::{ClosedForm, Flight, FreeFlight};
-use fairflight_media::{Extinction, Integral, OpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{Extinction, OpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// Solves τ(0, s) = −ln(1 − u) for s by Newton's method, τ′ = σ_t, inside a bracket that is halved where Newton fails.
@@ -49,17 +49,6 @@ impl<F: OpticalThickness> FreeFlight<F> for Newton {
 }
 
 impl<F: Extinction> ClosedForm<F> for Newton {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        unweighted_collided(quadrature, tolerance, score)
-    }
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        unweighted_escaped(quadrature, tolerance)
-    }
     fn lookups(
         &self,
         _quadrature: &mut RayQuadrature<F>,

@@ -1,9 +1,9 @@
 //! Regular tracking: from cell to cell, the optical thickness of each in closed form.
 
 use crate::root::crossing;
-use crate::theory::{HIGHEST_MOMENT, powers, unweighted_collided, unweighted_escaped};
+use crate::theory::{HIGHEST_MOMENT, powers};
 use crate::{ClosedForm, Flight, FreeFlight};
-use fairflight_media::{Cells, Extinction, Integral, RayQuadrature, Tolerance};
+use fairflight_media::{Cells, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// Adds up optical thickness cell by cell until −ln(1 − u) is reached, then solves inside the cell.
@@ -116,17 +116,6 @@ impl<F: Cells> FreeFlight<F> for Regular {
 }
 
 impl<F: Cells> ClosedForm<F> for Regular {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        unweighted_collided(quadrature, tolerance, score)
-    }
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        unweighted_escaped(quadrature, tolerance)
-    }
     fn lookups(
         &self,
         quadrature: &mut RayQuadrature<F>,

@@ -12,15 +12,28 @@ pub trait ClosedForm<F: Extinction> {
     ///
     /// Where `score` jumps, the `quadrature` must have a border. (A trait object: nobody is in a hurry here, and the
     /// quadrature is compiled once.)
+    ///
+    /// By default ∫ σ_t T score^k ds: that of a sampler whose weights are 1.
     fn collided(
         &self,
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
         score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT>;
+    ) -> Integral<HIGHEST_MOMENT> {
+        quadrature.integrate_nested(
+            tolerance,
+            |_, sigma_t| [sigma_t],
+            |s, sigma_t, [tau]| powers(score(s)).map(|power| sigma_t * (-tau).exp() * power),
+        )
+    }
 
     /// E\[1{escaped} weight^k\] for k = 1 … 8 (index k − 1).
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT];
+    ///
+    /// By default T(length), whatever the power: that of a sampler whose weights are 1.
+    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
+        let tau = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0];
+        [(-tau).exp(); HIGHEST_MOMENT]
+    }
 
     /// E\[N^k\] of the number N of look-ups of one flight, for k = 1 … 8 (index k − 1): the first is the expected cost.
     /// `None` where no closed form is known.
@@ -50,28 +63,6 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
     ) -> Option<[f64; HIGHEST_MOMENT]> {
         (**self).lookups(quadrature, tolerance)
     }
-}
-
-/// ∫ σ_t T score^k ds for k = 1 … 8: [`ClosedForm::collided`] of every sampler whose weights are 1.
-pub(crate) fn unweighted_collided<F: Extinction>(
-    quadrature: &mut RayQuadrature<F>,
-    tolerance: Tolerance,
-    score: &dyn Fn(f64) -> f64,
-) -> Integral<HIGHEST_MOMENT> {
-    quadrature.integrate_nested(
-        tolerance,
-        |_, sigma_t| [sigma_t],
-        |s, sigma_t, [tau]| powers(score(s)).map(|power| sigma_t * (-tau).exp() * power),
-    )
-}
-
-/// T(length), whatever the power: [`ClosedForm::escaped`] of every sampler whose weights are 1.
-pub(crate) fn unweighted_escaped<F: Extinction>(
-    quadrature: &mut RayQuadrature<F>,
-    tolerance: Tolerance,
-) -> [f64; HIGHEST_MOMENT] {
-    let tau = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0];
-    [(-tau).exp(); HIGHEST_MOMENT]
 }
 
 /// E\[N^k\], k = 1 … 8, of a flight that looks up once at each point of a Poisson process. `rates` at s and σ_t: of the

@@ -1,8 +1,8 @@
 //! Woodcock tracking: tentative flights through a majorant (raab-2008 algorithm 1, woodcock-1965).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, unweighted_collided, unweighted_escaped};
+use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk};
 use crate::{ClosedForm, Flight, FreeFlight};
-use fairflight_media::{Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{Extinction, InvertOpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// Flies through the majorant, and accepts a collision at s with probability σ_t(s)/majorant(s).
@@ -61,17 +61,6 @@ impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Woodcock<R> {
 }
 
 impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Woodcock<R> {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        unweighted_collided(quadrature, tolerance, score)
-    }
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        unweighted_escaped(quadrature, tolerance)
-    }
     fn lookups(
         &self,
         quadrature: &mut RayQuadrature<F>,
