@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 /// A report on its way.
 pub(super) struct Run<'a> {
     pub(super) options: &'a Options,
-    pub(super) library: MediumLibrary,
+    pub(super) media: MediumLibrary,
     progress: ProgressBar,
 }
 
@@ -17,7 +17,7 @@ impl<'a> Run<'a> {
     /// A report of so many measurements.
     pub(super) fn new(options: &'a Options, environment: &Environment, measurements: u64) -> Self {
         let progress = environment.progress(measurements, "measuring");
-        Self { options, library: MediumLibrary::default(), progress }
+        Self { options, media: MediumLibrary::default(), progress }
     }
 
     /// A seed of its own for each measurement of each part.

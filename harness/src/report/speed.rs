@@ -46,7 +46,7 @@ pub(super) fn compare(
         let (mut lookups, mut seconds) = (Vec::new(), Vec::new());
         for (k, &rays) in (0..).zip(rays) {
             let seed = run.seed(part + i, k);
-            let image = subject.measure(run.samples(rays), (seed, REPLICAS), &run.library)?;
+            let image = subject.measure(run.samples(rays), (seed, REPLICAS), &run.media)?;
             let error = image.squared_error();
             let rmse = error.map(f64::sqrt);
             let (time, looked_up) = (image.seconds(), image.lookups_per_pixel());

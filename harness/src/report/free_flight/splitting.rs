@@ -112,11 +112,11 @@ pub(super) fn study(run: &Run<'_>) -> Result<Splitting, Failure> {
             let measured = window.with("integrator", integrator.clone()).measure(
                 rays,
                 (seed(0), REPLICAS),
-                &run.library,
+                &run.media,
             )?;
             let shown = SHOWN
                 .contains(&power)
-                .then(|| ball.with("integrator", integrator).measure(RAYS, (seed(1), 2), &run.library));
+                .then(|| ball.with("integrator", integrator).measure(RAYS, (seed(1), 2), &run.media));
             run.advance();
             Ok::<_, Failure>(Method { window: measured, image: shown.transpose()? })
         };

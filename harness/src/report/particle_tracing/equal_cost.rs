@@ -59,9 +59,9 @@ pub(super) fn study(run: &Run<'_>) -> Result<EqualCost, Failure> {
         let subject =
             subject.with("integrator.sigma_samp", sigma_samp).with("integrator.allow_supercritical", true);
         // How many look-ups a ray takes is found out first, with variates of its own.
-        let pilot = subject.render(2, run.seed(10, k as u64), &run.library)?;
+        let pilot = subject.render(2, run.seed(10, k as u64), &run.media)?;
         let rays = (2.0 * budget / pilot.lookups_per_pixel()).round().max(2.0) as u32;
-        let image = subject.measure(rays, (run.seed(11, k as u64), REPLICAS), &run.library)?;
+        let image = subject.measure(rays, (run.seed(11, k as u64), REPLICAS), &run.media)?;
         // What the rounded number of rays leaves of the budget scales the error as more rays would.
         let to_budget = image.lookups_per_pixel() / budget;
         let rmse = image.squared_error().map(|error| (error * to_budget).sqrt());

@@ -131,7 +131,7 @@ fn point(
     let image = subject
         // Below 0.7 of the maximum the growth is measured in a section of its own.
         .with("integrator.allow_supercritical", true)
-        .measure(run.samples(RAYS), (seed, REPLICAS), &run.library)?;
+        .measure(run.samples(RAYS), (seed, REPLICAS), &run.media)?;
     let (squared_error, lookups) = (image.squared_error(), image.lookups_per_pixel());
     let merit = squared_error.map(|error| 1.0 / (error * lookups));
     Ok(Point { sigma_samp, squared_error, lookups, merit, image })

@@ -63,7 +63,7 @@ pub(super) fn study(run: &Run<'_>, lighting: Lighting) -> Result<Study, Failure>
     let shown = subject.with("integrator", exact.integrator).measure(
         rays,
         (run.seed(lighting as u64, 0), REPLICAS),
-        &run.library,
+        &run.media,
     )?;
     run.advance();
     let (pixels, squared_error) = shown.mean();
@@ -105,10 +105,10 @@ fn entry(
     let rays = if method.is_baseline {
         1
     } else {
-        let pilot = subject.render(2, !seed, &run.library)?;
+        let pilot = subject.render(2, !seed, &run.media)?;
         (2.0 * lookups / pilot.lookups_per_pixel()).round().max(1.0) as u32
     };
-    let image = subject.measure(rays, (seed, REPLICAS), &run.library)?;
+    let image = subject.measure(rays, (seed, REPLICAS), &run.media)?;
     let error = image.squared_difference(&reference.pixels, reference.squared_error);
     Ok(Entry { name: method.name, is_baseline: method.is_baseline, rmse: error.map(f64::sqrt), image })
 }
