@@ -1,7 +1,7 @@
-//! The least geometry that the papers' figures need: a pinhole camera, one medium in its bounds, lights.
+//! The least geometry that the papers' figures need: a pinhole camera, one medium in its bounds, lights, a few surfaces.
 //!
 //! A [`Scene`] is generic over its medium, its phase function and its [`Spectrum`], so that it compiles to what it has: a
-//! gray scene carries no colour, a homogeneous medium no look-up. There are no surfaces yet.
+//! gray scene carries no colour, a homogeneous medium no look-up, a scene without surfaces no intersection.
 //!
 //! Directions of travel are those of importons (from the camera) unless said otherwise; radiance is symmetric.
 
@@ -11,6 +11,7 @@ mod environment_map;
 mod error;
 mod light;
 mod spectrum;
+pub mod surface;
 mod volume;
 
 pub use background::Background;
@@ -19,6 +20,7 @@ pub use environment_map::EnvironmentMap;
 pub use error::SceneError;
 pub use light::{Connection, Emission, Lights, Source};
 pub use spectrum::Spectrum;
+pub use surface::{Geometry, Hit, Material, NoSurfaces, Segment, Shape, Surface, Surfaces};
 pub use volume::Volume;
 
 /// A camera that looks at a medium among lights.

@@ -1,0 +1,138 @@
+//! All surfaces of a scene, or none.
+
+use super::{Surface, TowardsSample};
+use crate::Spectrum;
+use fairflight_media::Line;
+use glam::DVec3;
+
+/// A piece of a straight line between two points that may lie on surfaces.
+///
+/// The surfaces of its ends are named by their index: their crossings at the ends are left out by algebra, so that no distance has
+/// to be taken for zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// From the start, of unit direction.
+    pub line: Line,
+    /// To the end \[length\]; may be infinite.
+    pub length: f64,
+    /// The surface that it starts on.
+    pub from: Option<usize>,
+    /// The surface that it ends on.
+    pub to: Option<usize>,
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<'s, C> {
+    /// From the start of the ray \[length\].
+    pub distance: f64,
+    /// The point.
+    pub position: DVec3,
+    /// Of unit length, on the side from where the ray comes.
+    pub normal: DVec3,
+    /// Whether that is the outer side.
+    pub outside: bool,
+    /// Which surface.
+    pub index: usize,
+    /// That surface.
+    pub surface: &'s Surface<C>,
+}
+
+/// The surfaces that a ray can meet.
+///
+/// A scene without surfaces has [`NoSurfaces`], and compiles to no surface code.
+pub trait Geometry<C: Spectrum> {
+    /// Whether there are no surfaces, known at compile time.
+    const IS_EMPTY: bool;
+
+    /// All of them.
+    fn surfaces(&self) -> &[Surface<C>];
+
+    /// The indices of those that emit.
+    fn emitters(&self) -> &[usize];
+
+    /// Whether a surface is specular.
+    fn has_specular(&self) -> bool;
+
+    /// The nearest surface on a segment; its end counts for nothing but its length.
+    fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>>;
+
+    /// Whether any surface lies between the ends of a segment. A specular surface is in the way, too.
+    fn is_occluded(&self, segment: &Segment) -> bool;
+
+    /// A direction from `point` towards the surface `index`; `None` where it is not seen.
+    fn sample_towards(&self, index: usize, point: DVec3, u: f64, v: f64) -> Option<TowardsSample> {
+        self.surfaces()[index].shape.sample_towards(point, u, v)
+    }
+}
+
+/// Nothing to meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NoSurfaces;
+
+impl<C: Spectrum> Geometry<C> for NoSurfaces {
+    const IS_EMPTY: bool = true;
+
+    #[inline]
+    fn surfaces(&self) -> &[Surface<C>] {
+        &[]
+    }
+    #[inline]
+    fn emitters(&self) -> &[usize] {
+        &[]
+    }
+    #[inline]
+    fn has_specular(&self) -> bool {
+        false
+    }
+    #[inline]
+    fn intersect(&self, _segment: &Segment) -> Option<Hit<'_, C>> {
+        None
+    }
+    #[inline]
+    fn is_occluded(&self, _segment: &Segment) -> bool {
+        false
+    }
+}
+
+/// A handful of surfaces, tried one by one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surfaces<C> {
+    all: Vec<Surface<C>>,
+    emitters: Vec<usize>,
+    has_specular: bool,
+}
+
+impl<C: Spectrum> Surfaces<C> {
+    /// These surfaces, in this order.
+    #[must_use]
+    pub fn new(all: Vec<Surface<C>>) -> Self {
+        let emitters = (0..all.len()).filter(|&i| all[i].emits()).collect();
+        let has_specular = all.iter().any(Surface::is_specular);
+        Self { all, emitters, has_specular }
+    }
+}
+
+impl<C: Spectrum> Geometry<C> for Surfaces<C> {
+    const IS_EMPTY: bool = false;
+
+    fn surfaces(&self) -> &[Surface<C>] {
+        &self.all
+    }
+    fn emitters(&self) -> &[usize] {
+        &self.emitters
+    }
+    fn has_specular(&self) -> bool {
+        self.has_specular
+    }
+    #[inline]
+    fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>> {
+        let _ = segment;
+        todo!()
+    }
+    #[inline]
+    fn is_occluded(&self, segment: &Segment) -> bool {
+        let _ = segment;
+        todo!()
+    }
+}
