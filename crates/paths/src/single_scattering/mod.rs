@@ -12,7 +12,8 @@ pub use marching::Marching;
 pub use primary::{Primary, SharedExplorers, Tracked};
 pub use scattering_driven::ScatteringDriven;
 pub use source_driven::SourceDriven;
-pub use technique::{Heuristic, Sampling, Technique};
+pub use crate::Heuristic;
+pub use technique::{Sampling, Technique};
 
 use crate::{Integrator, RayTransmittance};
 use fairflight_media::{Extinction, Line, Medium, PhaseFunction, Ray};
