@@ -4,7 +4,8 @@ use super::VoxelLattice;
 use crate::Failure;
 use crate::spec::{MediumKind, MediumSpec};
 use fairflight_media::{
-    AnalyticCosine, Bounds, ExpressionMedium, FieldError, Homogeneous, LineThickness, Medium, Perlin, Voxels,
+    AnalyticCosine, Bounds, EmptySpace, ExpressionMedium, FieldError, Homogeneous, LineThickness, Medium,
+    Perlin, Voxels,
 };
 use fairflight_volumes::{Affine, VoxelGrid, read_float_grid};
 use glam::{DAffine3, DVec3};
@@ -15,6 +16,8 @@ use std::sync::{Arc, Mutex};
 /// A medium of any kind.
 #[derive(Clone, Debug)]
 pub enum AnyMedium {
+    /// None: of a scene without a medium.
+    Empty,
     /// The same everywhere.
     Homogeneous(Arc<Homogeneous>),
     /// szirmay-kalos-2017 eq. 21.
@@ -41,6 +44,7 @@ impl AnyMedium {
     /// Does a job with the medium inside.
     pub fn with<J: MediumJob>(&self, job: J) -> J::Output {
         match self {
+            Self::Empty => job.by_closed_form(&EmptySpace),
             Self::Homogeneous(medium) => job.by_closed_form(&**medium),
             Self::AnalyticCosine(medium) => job.by_closed_form(&**medium),
             Self::Perlin(medium) => job.by_look_ups(&**medium),

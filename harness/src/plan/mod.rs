@@ -15,6 +15,7 @@ mod ray_estimator;
 mod sampling;
 mod scene;
 mod single_scattering;
+mod surfaces;
 mod voxel_lattice;
 mod walk;
 

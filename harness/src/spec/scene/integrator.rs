@@ -158,6 +158,17 @@ impl IntegratorSpec {
         }
     }
 
+    /// The name of an integrator that takes no account of surfaces.
+    #[must_use]
+    pub fn blind_to_surfaces(&self) -> Option<&'static str> {
+        match self {
+            Self::Transmittance { .. } => Some("transmittance"),
+            Self::ParticleTracer(_) => Some("particle_tracer"),
+            Self::LineSplitting { .. } => Some("line_splitting"),
+            Self::SingleScattering(_) => Some("single_scattering"),
+        }
+    }
+
     /// Reads `integrator`.
     ///
     /// # Errors
