@@ -7,6 +7,7 @@ mod material;
 mod rectangle;
 mod shape;
 mod sphere;
+mod towards;
 
 pub use geometry::{Geometry, Hit, NoSurfaces, Segment, Surfaces};
 pub use material::{Material, Surface, fresnel_reflectance, reflect, refract};
