@@ -64,7 +64,9 @@ pub struct CompensationOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OptionsError {
     /// A free flight has met the transmittance that there is.
-    #[error("transmittance: approximate needs placement: locally_homogeneous, a free flight knows no other transmittance")]
+    #[error(
+        "transmittance: approximate needs placement: locally_homogeneous, a free flight knows no other transmittance"
+    )]
     ApproximateFreeFlight,
 }
 
@@ -84,7 +86,9 @@ impl CompensationOptions {
     /// If they do not.
     pub fn checked(self) -> Result<Self, OptionsError> {
         match (self.placement, self.transmittance) {
-            (Placement::FreeFlight, TransmittanceUse::Approximate) => Err(OptionsError::ApproximateFreeFlight),
+            (Placement::FreeFlight, TransmittanceUse::Approximate) => {
+                Err(OptionsError::ApproximateFreeFlight)
+            }
             _ => Ok(self),
         }
     }

@@ -73,11 +73,8 @@ impl Region {
         let phase = &gather.world.volume.phase;
         let direction = y.sample(phase, source.next_uniform(), source.next_uniform());
         let mut segment = y.leave(direction, self.radius);
-        let hit = if self.near == 0 {
-            None
-        } else {
-            gather.world.surfaces.intersect_among(&segment, self.near)
-        };
+        let hit =
+            if self.near == 0 { None } else { gather.world.surfaces.intersect_among(&segment, self.near) };
         segment.length = hit.map_or(self.radius, |hit| hit.distance);
         let (vertex, factor) = match options.placement {
             Placement::FreeFlight => by_flight(&segment, hit.as_ref(), gather, source)?,

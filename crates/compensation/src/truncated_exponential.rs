@@ -9,7 +9,7 @@
 /// ```
 ///
 /// As printed they are 0/0 for σR → 0, where the limit is uniform: t = ξR, p = 1/R, P = 1 − s/R. Here they are written with
-/// expm1 and ln_1p, which lose no digit on the way there; at σR = 0 itself the limit is taken. R may be infinite if σ > 0.
+/// expm1 and ln_1p, which lose no digit on the way there; the limit is taken where σR is next to nothing. R may be infinite if σ > 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruncatedExponential {
     rate: f64,
@@ -17,6 +17,9 @@ pub struct TruncatedExponential {
     /// 1 − exp(−σR).
     mass: f64,
 }
+
+/// Below this the law is uniform to the last digit, and products with variates (of 2⁻⁵³ and more) would lose theirs.
+const UNIFORM_BELOW: f64 = 1e-280;
 
 impl TruncatedExponential {
     /// Of `rate` ≥ 0 \[1/length\] within `length` > 0; one of them may make the product 0 or infinite, but not undefined.
@@ -32,7 +35,7 @@ impl TruncatedExponential {
     #[inline]
     #[must_use]
     pub fn sample(&self, u: f64) -> f64 {
-        if self.mass == 0.0 {
+        if self.mass < UNIFORM_BELOW {
             return u * self.length;
         }
         (-(-u * self.mass).ln_1p() / self.rate).min(self.length)
@@ -42,7 +45,7 @@ impl TruncatedExponential {
     #[inline]
     #[must_use]
     pub fn pdf_distance(&self, distance: f64) -> f64 {
-        if self.mass == 0.0 {
+        if self.mass < UNIFORM_BELOW {
             return 1.0 / self.length;
         }
         self.rate * (-self.rate * distance).exp() / self.mass
@@ -55,7 +58,7 @@ impl TruncatedExponential {
         if distance >= self.length {
             return 0.0;
         }
-        if self.mass == 0.0 {
+        if self.mass < UNIFORM_BELOW {
             return 1.0 - distance / self.length;
         }
         // exp(−σs)(1 − exp(−σ(R − s)))/(1 − exp(−σR)): nothing cancels.

@@ -48,8 +48,8 @@ pub mod transport;
 mod walk;
 
 pub use grid::{Grid, GridError};
-pub use heuristic::Heuristic;
 pub use growth::{Criticality, Growth, grows_nowhere, second_moment_growth};
+pub use heuristic::Heuristic;
 pub use integrator::Integrator;
 pub use particle_tracer::{Attenuation, ParticleTracer};
 pub use path_tracer::PathTracer;

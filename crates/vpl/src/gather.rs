@@ -158,8 +158,8 @@ where
         let hit = world.surfaces.intersect(&segment);
         segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
         let mut arriving = match &hit {
-            Some(hit) => world.emission(*heuristic, Some(&from), hit),
-            None => world.background(*heuristic, Some(&from), &segment),
+            Some(hit) => world.emission(*heuristic, Some(&from), direction, hit),
+            None => world.background(*heuristic, Some(&from), direction),
         };
         if let Some(hit) = hit
             && let Some(passage) = world.pass(&hit, direction, source)

@@ -102,12 +102,7 @@ where
     K: Correction<C>,
 {
     /// What is scattered at `y`, per albedo or reflectance, as the `j`-th of `of` points of a ray.
-    fn shade<S: UniformSource + ?Sized>(
-        &mut self,
-        y: &Vertex,
-        (j, of): (u32, u32),
-        source: &mut S,
-    ) -> C {
+    fn shade<S: UniformSource + ?Sized>(&mut self, y: &Vertex, (j, of): (u32, u32), source: &mut S) -> C {
         let Self { gather, correction, component, .. } = self;
         let count = gather.vpls.len();
         let (which, scale) = match self.pairing {
@@ -145,9 +140,10 @@ where
         let heuristic = self.gather.heuristic;
         let mut behind = C::ZERO;
         if self.component == Component::All {
+            let direction = segment.line.direction;
             behind += match &hit {
-                Some(hit) => world.emission(heuristic, None, hit),
-                None => world.background(heuristic, None, &segment),
+                Some(hit) => world.emission(heuristic, None, direction, hit),
+                None => world.background(heuristic, None, direction),
             };
         }
         if let Some(hit) = hit

@@ -208,10 +208,7 @@ impl IntegratorPlan {
                 let asked = (*line, *starts, *majorant);
                 Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
             }
-            Self::RegularTransmittance
-            | Self::SingleScattering(_)
-            | Self::PathTracer(_)
-            | Self::Vpl(_) => {
+            Self::RegularTransmittance | Self::SingleScattering(_) | Self::PathTracer(_) | Self::Vpl(_) => {
                 Err(needs_closed_form("estimator.kind: regular"))
             }
         }

@@ -45,10 +45,7 @@ impl Shadow {
     }
 
     /// One worker's estimator where look-ups are all there is; `None` for the closed form.
-    pub(super) fn by_look_ups<'s>(
-        &'s self,
-        unlawful: &'s Cell<Option<Unlawful>>,
-    ) -> Option<RayWorker<'s>> {
+    pub(super) fn by_look_ups<'s>(&'s self, unlawful: &'s Cell<Option<Unlawful>>) -> Option<RayWorker<'s>> {
         match self {
             Self::Regular => None,
             Self::Sampled(estimator) => Some(estimator.worker(unlawful)),

@@ -1,7 +1,7 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
-use super::shadow::Shadow;
 use super::integrator::{admits_majorant, needs_closed_form};
+use super::shadow::Shadow;
 use super::{IntegratorJob, TileIntegrator, Unlawful};
 use crate::Failure;
 use crate::spec::{

@@ -88,11 +88,7 @@ impl TransportPlan {
 }
 
 impl PathTracerPlan {
-    pub(super) fn build(
-        spec: &PathTracerSpec,
-        medium: &AnyMedium,
-        bounds: &Bounds,
-    ) -> Result<Self, Failure> {
+    pub(super) fn build(spec: &PathTracerSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
         let transport = TransportPlan::build(&spec.transport, medium, bounds)?;
         Ok(Self { transport, max_vertices: spec.max_vertices })
     }

@@ -16,4 +16,8 @@ pub use experiment::{Experiment, Overrides, Request, Sweep};
 pub use medium::{MediumKind, MediumSpec};
 pub use node::{Node, Object};
 pub use profile::ProfileSpec;
-pub use scene::{ClampSpec, Collisions, ColourSpec, ComponentSpec, IntegratorSpec, LightSpec, MaterialSpec, Particles, PathTracerSpec, PhaseSpec, RayEstimatorSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec, SingleScatteringSpec, Strategy, SurfaceSpec, TracerSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec};
+pub use scene::{
+    ClampSpec, Collisions, ColourSpec, ComponentSpec, IntegratorSpec, LightSpec, MaterialSpec, Particles,
+    PathTracerSpec, PhaseSpec, RayEstimatorSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec,
+    SingleScatteringSpec, Strategy, SurfaceSpec, TracerSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
+};

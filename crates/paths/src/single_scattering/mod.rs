@@ -7,12 +7,12 @@ mod scattering_driven;
 mod source_driven;
 mod technique;
 
+pub use crate::Heuristic;
 pub use line::LineSampled;
 pub use marching::Marching;
 pub use primary::{Primary, SharedExplorers, Tracked};
 pub use scattering_driven::ScatteringDriven;
 pub use source_driven::SourceDriven;
-pub use crate::Heuristic;
 pub use technique::{Sampling, Technique};
 
 use crate::{Integrator, RayTransmittance};

@@ -5,6 +5,7 @@ use crate::{Heuristic, RayTransmittance};
 use fairflight_media::{Medium, PhaseFunction};
 use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
 use fairflight_sources::UniformSource;
+use glam::DVec3;
 
 /// From where a path came to an emitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,13 +66,15 @@ where
                 let pdf = map.pdf_solid_angle(towards);
                 let segment = vertex.leave(towards, f64::INFINITY);
                 let visibility = self.attenuated_visibility(&segment, shadow, source);
-                radiance +=
-                    arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility);
+                radiance += arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility);
             }
         }
         for &index in self.surfaces.emitters() {
+            // What an emitter sees of itself is left to the directions that the vertex chooses.
+            if vertex.surface() == Some(index) {
+                continue;
+            }
             let (u, v) = (source.next_uniform(), source.next_uniform());
-            // A flat emitter does not light itself, and a round one not its own outside: the vertex looks the other way.
             let Some(sample) = self.surfaces.sample_towards(index, vertex.position, u, v) else { continue };
             let scattered = vertex.pdf_solid_angle(phase, sample.direction);
             if scattered > 0.0 {
@@ -80,23 +83,29 @@ where
                 let visibility = self.attenuated_visibility(&segment, shadow, source);
                 let pdf = sample.pdf_solid_angle;
                 let emission = self.surfaces.surfaces()[index].emission;
-                radiance +=
-                    emission * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility);
+                radiance += emission * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility);
             }
         }
         radiance
     }
 
-    /// The radiance that a surface emits towards a path that met it: whole for one from the camera or a smooth surface, weighted against
+    /// The radiance that a surface emits towards a path that met it along `direction`: whole for one from the camera or a smooth surface, weighted against
     /// [`emitters_at`](Self::emitters_at) for one that a vertex sent there.
     #[inline]
-    pub fn emission(&self, heuristic: Heuristic, from: Option<&Scattered>, hit: &Hit<'_, C>) -> C {
+    pub fn emission(
+        &self,
+        heuristic: Heuristic,
+        from: Option<&Scattered>,
+        direction: DVec3,
+        hit: &Hit<'_, C>,
+    ) -> C {
         let emission = hit.surface.emission;
         match from {
             Some(Scattered { vertex, pdf_solid_angle }) if emission != C::ZERO => {
-                let offset = hit.position - vertex.position;
                 let shape = &hit.surface.shape;
-                let pdf = shape.pdf_towards(vertex.position, offset / hit.distance, hit.distance);
+                let is_own = vertex.surface() == Some(hit.index);
+                let pdf =
+                    if is_own { 0.0 } else { shape.pdf_towards(vertex.position, direction, hit.distance) };
                 emission * heuristic.mis_weight(*pdf_solid_angle, pdf)
             }
             _ => emission,
@@ -105,9 +114,8 @@ where
 
     /// The same for the background, where a path leaves everything.
     #[inline]
-    pub fn background(&self, heuristic: Heuristic, from: Option<&Scattered>, segment: &Segment) -> C {
+    pub fn background(&self, heuristic: Heuristic, from: Option<&Scattered>, towards: DVec3) -> C {
         let background = &self.lights.background;
-        let towards = segment.line.direction;
         let Some(Scattered { pdf_solid_angle, .. }) = from else { return background.radiance(towards) };
         let mut radiance = background.constant;
         for map in &background.maps {

@@ -49,10 +49,12 @@ where
                 Event::Passed { weight } => {
                     throughput = throughput * weight;
                     let Some(hit) = hit else {
-                        radiance += throughput * self.background(heuristic, from.as_ref(), &segment);
+                        radiance +=
+                            throughput * self.background(heuristic, from.as_ref(), segment.line.direction);
                         return Traced { radiance, is_cut: false };
                     };
-                    radiance += throughput * self.emission(heuristic, from.as_ref(), &hit);
+                    radiance +=
+                        throughput * self.emission(heuristic, from.as_ref(), segment.line.direction, &hit);
                     if let Some(passage) = self.pass(&hit, segment.line.direction, source) {
                         throughput = throughput * passage.radiance_scale;
                         let line = Line { origin: hit.position, direction: passage.direction };

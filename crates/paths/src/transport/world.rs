@@ -99,7 +99,9 @@ where
         S: UniformSource + ?Sized,
     {
         let length = segment.length.is_finite().then_some(segment.length);
-        let Some(ray) = self.volume.enter(&segment.line, length) else { return Event::Passed { weight: 1.0 } };
+        let Some(ray) = self.volume.enter(&segment.line, length) else {
+            return Event::Passed { weight: 1.0 };
+        };
         let mut left = walk.max_collisions();
         match walk.fly(model, &ray, 1.0, &mut left, source) {
             Leg::Scattered { s, weight } => {

@@ -57,6 +57,12 @@ pub trait Geometry<C: Spectrum> {
     /// The nearest surface on a segment; its end counts for nothing but its length.
     fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>>;
 
+    /// The surfaces that come within `radius` of a point, one bit each; all from the 64th on share one.
+    fn reaching(&self, center: DVec3, radius: f64) -> u64;
+
+    /// The nearest of some surfaces, which [`reaching`](Self::reaching) names.
+    fn intersect_among(&self, segment: &Segment, among: u64) -> Option<Hit<'_, C>>;
+
     /// Whether any surface lies between the ends of a segment. A specular surface is in the way, too.
     fn is_occluded(&self, segment: &Segment) -> bool;
 
@@ -90,6 +96,14 @@ impl<C: Spectrum> Geometry<C> for NoSurfaces {
         None
     }
     #[inline]
+    fn reaching(&self, _center: DVec3, _radius: f64) -> u64 {
+        0
+    }
+    #[inline]
+    fn intersect_among(&self, _segment: &Segment, _among: u64) -> Option<Hit<'_, C>> {
+        None
+    }
+    #[inline]
     fn is_occluded(&self, _segment: &Segment) -> bool {
         false
     }
@@ -116,6 +130,37 @@ impl<C: Spectrum> Surfaces<C> {
     }
 }
 
+impl<C: Spectrum> Surfaces<C> {
+    /// The nearest of the surfaces whose index is wanted.
+    #[inline]
+    fn nearest(&self, segment: &Segment, wanted: impl Fn(usize) -> bool) -> Option<Hit<'_, C>> {
+        let mut length = segment.length;
+        let mut nearest = None;
+        for (index, surface) in self.all.iter().enumerate() {
+            if !wanted(index) {
+                continue;
+            }
+            let leaves = segment.from == Some(index);
+            if let Some(distance) = surface.shape.intersect(&segment.line, length, leaves) {
+                length = distance;
+                nearest = Some(index);
+            }
+        }
+        let index = nearest?;
+        let surface = &self.all[index];
+        let position = segment.line.at(length);
+        let outer = surface.shape.normal(position);
+        let outside = segment.line.direction.dot(outer) < 0.0;
+        let normal = if outside { outer } else { -outer };
+        Some(Hit { distance: length, position, normal, outside, index, surface })
+    }
+}
+
+/// The bit of a surface.
+fn bit(index: usize) -> u64 {
+    1 << index.min(63)
+}
+
 impl<C: Spectrum> Geometry<C> for Surfaces<C> {
     const IS_EMPTY: bool = false;
 
@@ -130,22 +175,15 @@ impl<C: Spectrum> Geometry<C> for Surfaces<C> {
     }
     #[inline]
     fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>> {
-        let mut length = segment.length;
-        let mut nearest = None;
-        for (index, surface) in self.all.iter().enumerate() {
-            let leaves = segment.from == Some(index);
-            if let Some(distance) = surface.shape.intersect(&segment.line, length, leaves) {
-                length = distance;
-                nearest = Some(index);
-            }
-        }
-        let index = nearest?;
-        let surface = &self.all[index];
-        let position = segment.line.at(length);
-        let outer = surface.shape.normal(position);
-        let outside = segment.line.direction.dot(outer) < 0.0;
-        let normal = if outside { outer } else { -outer };
-        Some(Hit { distance: length, position, normal, outside, index, surface })
+        self.nearest(segment, |_| true)
+    }
+    fn reaching(&self, center: DVec3, radius: f64) -> u64 {
+        let near = self.all.iter().enumerate().filter(|(_, surface)| surface.shape.reaches(center, radius));
+        near.fold(0, |bits, (index, _)| bits | bit(index))
+    }
+    #[inline]
+    fn intersect_among(&self, segment: &Segment, among: u64) -> Option<Hit<'_, C>> {
+        self.nearest(segment, |index| among & bit(index) != 0)
     }
     #[inline]
     fn is_occluded(&self, segment: &Segment) -> bool {

@@ -300,6 +300,10 @@ pub(super) fn named<T: Copy>(node: &Node<'_>, names: &[(&str, T)]) -> Result<T, 
 }
 
 /// One of some names, the first where the key is absent.
-pub(super) fn named_or<T: Copy>(object: &Object<'_>, key: &'static str, names: &[(&str, T)]) -> Result<T, Failure> {
+pub(super) fn named_or<T: Copy>(
+    object: &Object<'_>,
+    key: &'static str,
+    names: &[(&str, T)],
+) -> Result<T, Failure> {
     object.optional(key).map_or(Ok(names[0].1), |node| named(&node, names))
 }

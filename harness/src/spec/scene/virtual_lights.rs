@@ -176,12 +176,9 @@ fn read_compensation(node: &Node<'_>) -> Result<CompensationOptions, Failure> {
         ("many_to_one", Strategy::ManyToOne),
         ("one_to_one", Strategy::OneToOne),
     ];
-    let placements = [
-        ("free_flight", Placement::FreeFlight),
-        ("locally_homogeneous", Placement::LocallyHomogeneous),
-    ];
-    let transmittances =
-        [("exact", TransmittanceUse::Exact), ("approximate", TransmittanceUse::Approximate)];
+    let placements =
+        [("free_flight", Placement::FreeFlight), ("locally_homogeneous", Placement::LocallyHomogeneous)];
+    let transmittances = [("exact", TransmittanceUse::Exact), ("approximate", TransmittanceUse::Approximate)];
     let visibilities =
         [("full", Visibility::Full), ("local", Visibility::Local), ("ignored", Visibility::Ignored)];
     let steps = object.optional("steps").filter(|node| !node.is_null());
