@@ -1,6 +1,6 @@
 //! What an image tells: mean radiance, variance, cost, efficiency.
 
-use super::draw::{Drawn, Spent};
+use super::canvas::{Drawn, MeanVariance, Spent};
 use super::pixel::Pixel;
 use crate::image::Image;
 use crate::plan::ScenePlan;
@@ -27,6 +27,7 @@ pub(super) struct Statistics {
 pub(super) struct Size {
     pub width: u32,
     pub height: u32,
+    /// Those that were drawn.
     pub samples_per_pixel: u32,
     pub channels: usize,
 }
@@ -79,6 +80,8 @@ pub(super) struct Efficiency {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moments {
     channels: usize,
+    /// Per pixel.
+    samples: u32,
     /// Mean radiance per pixel.
     means: Vec<[f64; 3]>,
     /// The mean over pixels and channels of the variance of one sample.
@@ -97,9 +100,13 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
         let apart = sum(&mut pixels.iter().map(Pixel::mean_variance_gray)).map(|variance| variance / n);
         Self {
             channels: C::CHANNELS,
+            samples: drawn.samples,
             means: pixels.iter().map(|pixel| pixel.mean().rgb()).collect(),
             variance: sum(&mut pixels.iter().map(|pixel| pixel.variance().map(C::mean))),
-            mean_variance: apart.zip(drawn.shared_variance).map(|(apart, shared)| apart + shared),
+            mean_variance: match drawn.mean_variance {
+                MeanVariance::OfPixels { shared } => apart.zip(shared).map(|(apart, shared)| apart + shared),
+                MeanVariance::OfPasses(variance) => variance,
+            },
             cost: drawn.cost,
             warning: drawn.warning,
         }
@@ -150,7 +157,7 @@ impl Moments {
     }
 
     /// Mean over pixels and channels of the squared difference.
-    fn squared_error(&self, reference: &Image) -> f64 {
+    pub(super) fn squared_error(&self, reference: &Image) -> f64 {
         let differences = self.means.as_flattened().iter().zip(reference.pixels().as_flattened());
         let sum: f64 = differences.map(|(found, expected)| (found - f64::from(*expected)).powi(2)).sum();
         sum / (3.0 * self.means.len() as f64)
@@ -166,7 +173,7 @@ impl Moments {
         provenance: Provenance,
     ) -> Statistics {
         let [width, height] = plan.camera.resolution();
-        let samples = f64::from(plan.samples_per_pixel);
+        let samples = f64::from(self.samples);
         let mean = self.mean();
         let reference = reference.map(|(image, file)| (self.squared_error(image), file));
         let squared_error = match &reference {
@@ -186,7 +193,7 @@ impl Moments {
         };
         let Spent { lookups, cpu_seconds, .. } = self.cost;
         Statistics {
-            image: Size { width, height, samples_per_pixel: plan.samples_per_pixel, channels: self.channels },
+            image: Size { width, height, samples_per_pixel: self.samples, channels: self.channels },
             radiance: Radiance {
                 mean: mean[..self.channels].iter().sum::<f64>() / self.channels as f64,
                 standard_error: self.mean_variance.map(f64::sqrt),
@@ -196,7 +203,7 @@ impl Moments {
             reference: reference.map(|(error, file)| ReferenceError { rmse: error.sqrt(), file }),
             cost: Cost {
                 lookups,
-                rays: self.means.len() as u64 * u64::from(plan.samples_per_pixel),
+                rays: self.means.len() as u64 * u64::from(self.samples),
                 seconds,
                 cpu_seconds,
             },
@@ -208,6 +215,11 @@ impl Moments {
             warnings,
             provenance,
         }
+    }
+
+    /// Samples per pixel.
+    pub(crate) fn samples(&self) -> u32 {
+        self.samples
     }
 
     /// What is to be said of the walks.
