@@ -32,11 +32,7 @@ impl<C: Spectrum> EnvironmentMap<C> {
             return Err(SceneError::PixelCount { width, height, found: pixels.len() });
         }
         for pixel in &pixels {
-            SceneError::check_finite("the environment map", pixel.is_finite())?;
-            let least = (0..C::CHANNELS).map(|i| pixel.channel(i)).fold(f64::INFINITY, f64::min);
-            if least < 0.0 {
-                return Err(SceneError::Negative { what: "the environment map", found: least });
-            }
+            SceneError::check_strength("the environment map", *pixel)?;
         }
         let mut map = Self { width, height, pixels, cumulative: Vec::new() };
         let mut flux = 0.0;
@@ -57,6 +53,13 @@ impl<C: Spectrum> EnvironmentMap<C> {
         let column = ((u * self.width as f64) as usize).min(self.width - 1);
         let row = ((v * self.height as f64) as usize).min(self.height - 1);
         self.pixels[row * self.width + column]
+    }
+
+    /// The density of [`sample`](Self::sample) at a direction of unit length \[1/sr\]: the greatest channel of its
+    /// pixel/[`flux`](Self::flux); 0 for a black map.
+    #[must_use]
+    pub fn pdf_solid_angle(&self, towards: DVec3) -> f64 {
+        if self.flux() > 0.0 { self.radiance(towards).max_channel() / self.flux() } else { 0.0 }
     }
 
     /// ∫ of the greatest channel over the sphere \[radiance · sr\].
@@ -124,6 +127,39 @@ mod tests {
             assert_eq!(map.radiance(direction), radiance);
         }
         assert!(EnvironmentMap::new(1, 1, vec![0.0]).unwrap().sample(0.5, 0.5, 0.5).is_none());
+    }
+
+    #[test]
+    fn samples_follow_the_density_that_is_told() {
+        use crate::directions::on_sphere;
+        use crate::variates::{Variates, mean_and_error};
+        // The mean of g/pdf is the integral of g over the pixels that shine; of the twelve, only the first is black.
+        let map = map();
+        let first = 1.0 - (PI / 3.0).cos();
+        let g = |d: DVec3| 1.0 + d.x * d.y + d.z * d.z;
+        let mut next = Variates::new(5);
+        let (mean, error) = mean_and_error(100_000, || {
+            let (direction, radiance) = map.sample(next.draw(), next.draw(), next.draw()).unwrap();
+            let pdf = map.pdf_solid_angle(direction);
+            assert_eq!(pdf, radiance / map.flux());
+            g(direction) / pdf
+        });
+        let (everywhere, its_error) = mean_and_error(400_000, || {
+            let direction = on_sphere(next.draw(), next.draw());
+            4.0 * PI * if map.radiance(direction) > 0.0 { g(direction) } else { 0.0 }
+        });
+        assert!((mean - everywhere).abs() < 5.0 * error.hypot(its_error), "{mean} {everywhere}");
+        // The integral of the density is 1, and of 1 the solid angle.
+        let (whole, error) =
+            mean_and_error(100_000, || 4.0 * PI * map.pdf_solid_angle(on_sphere(next.draw(), next.draw())));
+        assert!((whole - 1.0).abs() < 5.0 * error, "{whole}");
+        let (angle, error) = mean_and_error(100_000, || {
+            let (direction, _) = map.sample(next.draw(), next.draw(), next.draw()).unwrap();
+            1.0 / map.pdf_solid_angle(direction)
+        });
+        assert!((angle - (4.0 * PI - TAU / 4.0 * first)).abs() < 5.0 * error, "{angle}");
+        let black = EnvironmentMap::new(1, 1, vec![0.0]).unwrap();
+        assert_eq!(black.pdf_solid_angle(DVec3::Z), 0.0);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! What the constructors of a scene refuse.
 
+use crate::Spectrum;
+
 /// Why a part of a scene cannot be built. Each variant names the inequality that was violated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
@@ -12,6 +14,14 @@ pub enum SceneError {
     /// A number is negative.
     #[error("{what} must be at least 0, found {found}")]
     Negative {
+        /// The parameter.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+    },
+    /// A number is negative or zero.
+    #[error("{what} must be above 0, found {found}")]
+    NotPositive {
         /// The parameter.
         what: &'static str,
         /// Its value.
@@ -52,5 +62,18 @@ pub enum SceneError {
 impl SceneError {
     pub(crate) fn check_finite(what: &'static str, is_finite: bool) -> Result<(), Self> {
         if is_finite { Ok(()) } else { Err(Self::NotFinite { what }) }
+    }
+
+    /// Finite and above 0.
+    pub(crate) fn check_positive(what: &'static str, found: f64) -> Result<(), Self> {
+        Self::check_finite(what, found.is_finite())?;
+        if found > 0.0 { Ok(()) } else { Err(Self::NotPositive { what, found }) }
+    }
+
+    /// Finite and at least 0 in every channel.
+    pub(crate) fn check_strength<C: Spectrum>(what: &'static str, strength: C) -> Result<(), Self> {
+        Self::check_finite(what, strength.is_finite())?;
+        let least = (0..C::CHANNELS).map(|i| strength.channel(i)).fold(f64::INFINITY, f64::min);
+        if least < 0.0 { Err(Self::Negative { what, found: least }) } else { Ok(()) }
     }
 }

@@ -7,15 +7,19 @@
 
 mod background;
 mod camera;
+mod directions;
 mod environment_map;
 mod error;
 mod light;
 mod spectrum;
 pub mod surface;
+#[cfg(test)]
+mod variates;
 mod volume;
 
 pub use background::Background;
 pub use camera::{Camera, Projection};
+pub use directions::cosine_hemisphere;
 pub use environment_map::EnvironmentMap;
 pub use error::SceneError;
 pub use light::{Connection, Emission, Lights, Source};

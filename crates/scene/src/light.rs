@@ -1,7 +1,8 @@
 //! Lights that a ray cannot hit by chance, and all lights together.
 
+use crate::directions::{across, on_sphere};
 use crate::{Background, SceneError, Spectrum};
-use glam::{DVec3, dvec3};
+use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// A light of no extent, seen as a point or as a direction.
@@ -41,7 +42,7 @@ impl<C: Spectrum> Source<C> {
     /// If a number is not finite, or the power is negative.
     pub fn point(position: DVec3, power: C) -> Result<Self, SceneError> {
         SceneError::check_finite("position", position.is_finite())?;
-        check_strength("power", power)?;
+        SceneError::check_strength("power", power)?;
         Ok(Self::Point { position, power })
     }
 
@@ -52,7 +53,7 @@ impl<C: Spectrum> Source<C> {
     pub fn directional(direction: DVec3, irradiance: C) -> Result<Self, SceneError> {
         SceneError::check_finite("direction", direction.is_finite())?;
         let zero = SceneError::Degenerate { what: "direction", because: "a vector of length 0" };
-        check_strength("irradiance", irradiance)?;
+        SceneError::check_strength("irradiance", irradiance)?;
         Ok(Self::Directional { direction: direction.try_normalize().ok_or(zero)?, irradiance })
     }
 
@@ -79,12 +80,6 @@ impl<C: Spectrum> Source<C> {
             }
         }
     }
-}
-
-fn check_strength<C: Spectrum>(what: &'static str, strength: C) -> Result<(), SceneError> {
-    SceneError::check_finite(what, strength.is_finite())?;
-    let least = (0..C::CHANNELS).map(|i| strength.channel(i)).fold(f64::INFINITY, f64::min);
-    if least < 0.0 { Err(SceneError::Negative { what, found: least }) } else { Ok(()) }
 }
 
 /// All lights of a scene.
@@ -148,24 +143,11 @@ impl<C: Spectrum> Lights<C> {
     }
 }
 
-/// Uniform on the unit sphere.
-fn on_sphere(u: f64, v: f64) -> DVec3 {
-    let z = 1.0 - 2.0 * u;
-    let (sin, cos) = (TAU * v).sin_cos();
-    let horizontal = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-    dvec3(horizontal * cos, horizontal * sin, z)
-}
-
-/// Two unit vectors across a unit vector and each other.
-fn across(axis: DVec3) -> (DVec3, DVec3) {
-    let x = axis.any_orthonormal_vector();
-    (x, axis.cross(x))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::EnvironmentMap;
+    use glam::dvec3;
 
     #[test]
     fn a_point_light_fades_with_the_square() {

@@ -1,4 +1,4 @@
-//! All surfaces of a scene, or none.
+//! What a ray asks of the surfaces of a scene, and the answer where there are none.
 
 use super::{Surface, TowardsSample};
 use crate::Spectrum;
@@ -60,7 +60,7 @@ pub trait Geometry<C: Spectrum> {
     /// Whether any surface lies between the ends of a segment. A specular surface is in the way, too.
     fn is_occluded(&self, segment: &Segment) -> bool;
 
-    /// A direction from `point` towards the surface `index`; `None` where it is not seen.
+    /// A direction from `point` towards the surface `index`, on which the point must not lie; see [`Shape::sample_towards`](super::Shape::sample_towards).
     fn sample_towards(&self, index: usize, point: DVec3, u: f64, v: f64) -> Option<TowardsSample> {
         self.surfaces()[index].shape.sample_towards(point, u, v)
     }
@@ -92,47 +92,5 @@ impl<C: Spectrum> Geometry<C> for NoSurfaces {
     #[inline]
     fn is_occluded(&self, _segment: &Segment) -> bool {
         false
-    }
-}
-
-/// A handful of surfaces, tried one by one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Surfaces<C> {
-    all: Vec<Surface<C>>,
-    emitters: Vec<usize>,
-    has_specular: bool,
-}
-
-impl<C: Spectrum> Surfaces<C> {
-    /// These surfaces, in this order.
-    #[must_use]
-    pub fn new(all: Vec<Surface<C>>) -> Self {
-        let emitters = (0..all.len()).filter(|&i| all[i].emits()).collect();
-        let has_specular = all.iter().any(Surface::is_specular);
-        Self { all, emitters, has_specular }
-    }
-}
-
-impl<C: Spectrum> Geometry<C> for Surfaces<C> {
-    const IS_EMPTY: bool = false;
-
-    fn surfaces(&self) -> &[Surface<C>] {
-        &self.all
-    }
-    fn emitters(&self) -> &[usize] {
-        &self.emitters
-    }
-    fn has_specular(&self) -> bool {
-        self.has_specular
-    }
-    #[inline]
-    fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>> {
-        let _ = segment;
-        todo!()
-    }
-    #[inline]
-    fn is_occluded(&self, segment: &Segment) -> bool {
-        let _ = segment;
-        todo!()
     }
 }

@@ -88,6 +88,12 @@ impl Shape {
 
     /// A direction from `point` towards the part of the shape that is seen from there; `None` where nothing is seen (a set of
     /// measure zero: in the plane of a rectangle, on a sphere).
+    ///
+    /// Towards a rectangle by a point uniform by area; towards a sphere from outside uniform in the cone of directions that meet
+    /// it, from inside uniform in all directions.
+    ///
+    /// A point that was found on this very shape must not ask: rounding says on which side of a sphere it lies. What a shape sees
+    /// of itself (a sphere its inside) is left to directions drawn otherwise, with a density of 0 for this way.
     #[inline]
     #[must_use]
     pub fn sample_towards(&self, point: DVec3, u: f64, v: f64) -> Option<TowardsSample> {
@@ -97,14 +103,14 @@ impl Shape {
         }
     }
 
-    /// The density of [`sample_towards`](Self::sample_towards) for a direction that first meets the shape at `distance`
-    /// \[1/sr\].
+    /// The density of [`sample_towards`](Self::sample_towards) for a direction of unit length that first meets the shape at
+    /// `distance` \[1/sr\], to the last bit the one that the sample tells; 0 where there is no sample.
     #[inline]
     #[must_use]
     pub fn pdf_towards(&self, point: DVec3, direction: DVec3, distance: f64) -> f64 {
         match self {
             Self::Rectangle(rectangle) => rectangle.pdf_towards(direction, distance),
-            Self::Sphere(sphere) => sphere.pdf_towards(point, direction, distance),
+            Self::Sphere(sphere) => sphere.pdf_towards(point),
         }
     }
 
