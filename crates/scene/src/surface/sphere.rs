@@ -16,11 +16,13 @@ pub struct Sphere {
 
 impl Sphere {
     /// # Errors
-    /// If a number is not finite, or the radius is not above 0.
+    /// If a number is not finite, or radius or area are not above 0.
     pub fn new(center: DVec3, radius: f64) -> Result<Self, SceneError> {
         SceneError::check_finite("center", center.is_finite())?;
         SceneError::check_positive("radius", radius)?;
-        Ok(Self { center, radius })
+        let sphere = Self { center, radius };
+        SceneError::check_positive("the area of the sphere", sphere.area())?;
+        Ok(sphere)
     }
 
     /// A line that only touches does not meet the sphere. One that starts on it meets it at the other end of its chord, which
@@ -209,5 +211,7 @@ mod tests {
             Err(SceneError::NotPositive { what: "radius", found: 0.0 })
         );
         assert!(matches!(Sphere::new(DVec3::ZERO, -1.0), Err(SceneError::NotPositive { .. })));
+        assert!(matches!(Sphere::new(DVec3::ZERO, 1e-170), Err(SceneError::NotPositive { .. })));
+        assert!(matches!(Sphere::new(DVec3::ZERO, 1e170), Err(SceneError::NotFinite { .. })));
     }
 }

@@ -182,9 +182,10 @@ mod tests {
         let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
         assert!(sphere.sample_towards(2.0 * DVec3::X, 0.5, 0.5).is_none());
         assert_eq!(sphere.pdf_towards(2.0 * DVec3::X, DVec3::X, 1.0), 0.0);
-        let speck = Shape::Sphere(Sphere::new(DVec3::ZERO, 1e-200).unwrap());
-        assert!(speck.sample_towards(DVec3::X, 0.5, 0.5).is_none());
-        assert_eq!(speck.pdf_towards(DVec3::X, DVec3::NEG_X, 1.0), 0.0);
+        let speck = Shape::Sphere(Sphere::new(DVec3::ZERO, 1e-150).unwrap());
+        let point = 1e10 * DVec3::X;
+        assert!(speck.sample_towards(point, 0.5, 0.5).is_none());
+        assert_eq!(speck.pdf_towards(point, DVec3::NEG_X, 1e10), 0.0);
     }
 
     #[test]
