@@ -197,4 +197,16 @@ mod tests {
         let rim = sphere.sample_towards(point, 1.0, 0.3).unwrap();
         assert!((rim.direction.z + 0.8).abs() < 1e-15 && (rim.distance - 4.0).abs() < 1e-14);
     }
+
+    #[test]
+    fn distances_to_a_near_sphere_keep_their_digits() {
+        // Straight down onto it from both sides, all numbers exact but the last digits of the quotient.
+        let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
+        for h in [2f64.powi(-20), 2f64.powi(-40)] {
+            for z in [2.0 + h, 2.0 - h] {
+                let sample = sphere.sample_towards(dvec3(0.0, 0.0, z), 0.0, 0.3).unwrap();
+                assert!((sample.distance / h - 1.0).abs() < 1e-15, "{z} {}", sample.distance);
+            }
+        }
+    }
 }
