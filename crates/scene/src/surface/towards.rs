@@ -200,12 +200,12 @@ mod tests {
 
     #[test]
     fn distances_to_a_near_sphere_keep_their_digits() {
-        // Straight down onto it from both sides, all numbers exact but the last digits of the quotient.
-        let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
-        for h in [2f64.powi(-20), 2f64.powi(-40)] {
-            for z in [2.0 + h, 2.0 - h] {
-                let sample = sphere.sample_towards(dvec3(0.0, 0.0, z), 0.0, 0.3).unwrap();
-                assert!((sample.distance / h - 1.0).abs() < 1e-15, "{z} {}", sample.distance);
+        // Straight onto it from both sides; the difference of two near numbers is exact.
+        for radius in [0.3, 0.7, 1.1, 1.9] {
+            let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, radius).unwrap());
+            for z in [1e-6, 1e-11, -1e-11, -1e-6].map(|h| radius + h) {
+                let found = sphere.sample_towards(dvec3(0.0, 0.0, z), 0.0, 0.3).unwrap().distance;
+                assert!((found / (z - radius).abs() - 1.0).abs() < 2e-15, "{radius} {z} {found}");
             }
         }
     }
