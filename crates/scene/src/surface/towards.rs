@@ -204,8 +204,16 @@ mod tests {
         for radius in [0.3, 0.7, 1.1, 1.9] {
             let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, radius).unwrap());
             for z in [1e-6, 1e-11, -1e-11, -1e-6].map(|h| radius + h) {
-                let found = sphere.sample_towards(dvec3(0.0, 0.0, z), 0.0, 0.3).unwrap().distance;
+                let point = dvec3(0.0, 0.0, z);
+                let found = sphere.sample_towards(point, 0.0, 0.3).unwrap().distance;
                 assert!((found / (z - radius).abs() - 1.0).abs() < 2e-15, "{radius} {z} {found}");
+                // Slanted: the quadratic equation of the crossing, t² − 2 t along + z² − radius² = 0.
+                for u in [0.1, 0.2, 0.3] {
+                    let sample = sphere.sample_towards(point, u, 0.3).unwrap();
+                    let (t, along) = (sample.distance, -z * sample.direction.z);
+                    let last = (z - radius) * (z + radius);
+                    assert!((t * (t - 2.0 * along) + last).abs() < 4e-15 * last.abs(), "{radius} {z} {u}");
+                }
             }
         }
     }
