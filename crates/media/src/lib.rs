@@ -22,6 +22,7 @@ mod bounded;
 mod bounds;
 mod cells;
 mod constant;
+mod empty_space;
 mod error;
 mod expression;
 mod extinction;
@@ -45,6 +46,7 @@ pub use bounded::Bounded;
 pub use bounds::{Bounds, Clip};
 pub use cells::{Cells, LineCells};
 pub use constant::Constant;
+pub use empty_space::EmptySpace;
 pub use error::FieldError;
 pub use expression::{ExpressionError, ExpressionFieldError, ExpressionMedium, ExpressionProfile};
 pub use extinction::{

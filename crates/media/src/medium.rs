@@ -26,6 +26,9 @@ impl Line {
 /// A medium may keep its data in coordinates of its own (the index space of voxels, the lattice of a noise). A line is
 /// mapped there once per ray by [`Medium::local`], and each look-up then costs no transformation.
 pub trait Medium {
+    /// Whether there is no extinction anywhere, known at compile time: code for a medium is then left out.
+    const IS_EMPTY: bool = false;
+
     /// The line in the medium's own coordinates, still parametrised by world distance. The default is world space.
     fn local(&self, line: Line) -> Line {
         line
@@ -63,6 +66,8 @@ pub trait MediumBreakpoints: Medium {
 macro_rules! behind_a_pointer {
     ($($pointer:ty),*) => {$(
         impl<M: Medium + ?Sized> Medium for $pointer {
+            const IS_EMPTY: bool = M::IS_EMPTY;
+
             fn local(&self, line: Line) -> Line {
                 (**self).local(line)
             }

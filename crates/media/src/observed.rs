@@ -64,6 +64,8 @@ impl<M> Observed<M> {
 }
 
 impl<M: Medium> Medium for Observed<M> {
+    const IS_EMPTY: bool = M::IS_EMPTY;
+
     fn local(&self, line: Line) -> Line {
         self.medium.local(line)
     }

@@ -18,11 +18,15 @@ pub struct Volume<M, P, C> {
 }
 
 impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
-    /// The part of a ray inside the bounds as a profile; `None` where it misses them.
+    /// The part of a ray inside the bounds as a profile; `None` where it misses them, or there is no medium at all.
     ///
     /// `length` ends the ray; `line.direction` is of unit length.
     #[inline]
     pub fn enter(&self, line: &Line, length: Option<f64>) -> Option<Ray<&M>> {
+        // Known at compile time: a scene without a medium has no code for one.
+        if M::IS_EMPTY {
+            return None;
+        }
         if self.bounds.certainly_misses(line.origin, line.direction) {
             return None;
         }

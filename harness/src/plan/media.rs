@@ -4,7 +4,8 @@ use super::VoxelLattice;
 use crate::Failure;
 use crate::spec::{MediumKind, MediumSpec};
 use fairflight_media::{
-    AnalyticCosine, Bounds, ExpressionMedium, FieldError, Homogeneous, LineThickness, Medium, Perlin, Voxels,
+    AnalyticCosine, Bounds, EmptySpace, ExpressionMedium, FieldError, Homogeneous, LineThickness, Medium,
+    Perlin, Voxels,
 };
 use fairflight_volumes::{Affine, VoxelGrid, read_float_grid};
 use glam::{DAffine3, DVec3};
@@ -15,6 +16,8 @@ use std::sync::{Arc, Mutex};
 /// A medium of any kind.
 #[derive(Clone, Debug)]
 pub enum AnyMedium {
+    /// None: of a scene without a medium.
+    Empty,
     /// The same everywhere.
     Homogeneous(Arc<Homogeneous>),
     /// szirmay-kalos-2017 eq. 21.
@@ -41,12 +44,41 @@ impl AnyMedium {
     /// Does a job with the medium inside.
     pub fn with<J: MediumJob>(&self, job: J) -> J::Output {
         match self {
+            Self::Empty => job.by_closed_form(&EmptySpace),
             Self::Homogeneous(medium) => job.by_closed_form(&**medium),
             Self::AnalyticCosine(medium) => job.by_closed_form(&**medium),
             Self::Perlin(medium) => job.by_look_ups(&**medium),
             Self::Expression(medium) => job.by_look_ups(&**medium),
             Self::Voxels(medium) => job.by_closed_form(&**medium),
         }
+    }
+}
+
+impl AnyMedium {
+    /// The greatest extinction that the medium declares, positive also where there is none; `key` is what needs it.
+    ///
+    /// # Errors
+    /// If it declares none.
+    pub(super) fn greatest_extinction(&self, key: &str) -> Result<f64, Failure> {
+        let bound = self.with(UpperBound).ok_or_else(|| {
+            Failure::refused(format!(
+                "{key}: this key is missing, and the medium declares no majorant that could stand for it"
+            ))
+        })?;
+        // Walks through nothing need a rate all the same; at this one they never collide.
+        Ok(bound.max(f64::MIN_POSITIVE))
+    }
+}
+
+struct UpperBound;
+
+impl MediumJob for UpperBound {
+    type Output = Option<f64>;
+    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Option<f64> {
+        medium.upper_bound()
+    }
+    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Option<f64> {
+        medium.upper_bound()
     }
 }
 

@@ -81,6 +81,10 @@ impl AnyProfile {
     /// If it crosses too many voxels.
     pub fn ray(medium: &AnyMedium, clip: &Clip) -> Result<Self, Failure> {
         Ok(match medium {
+            AnyMedium::Empty => Self::Constant(
+                Constant::new(0.0, clip.length)
+                    .map_err(|error| Failure::refused(format!("profile: {error}")))?,
+            ),
             AnyMedium::Homogeneous(medium) => Self::Homogeneous(Ray::new(Arc::clone(medium), clip)),
             AnyMedium::AnalyticCosine(medium) => Self::AnalyticCosine(Ray::new(Arc::clone(medium), clip)),
             AnyMedium::Perlin(medium) => Self::Perlin(Ray::new(Arc::clone(medium), clip)),

@@ -1,13 +1,12 @@
 //! A scene whose parts fit together.
 
-use super::{AnyMedium, AnyPhase, IntegratorPlan, MediumLibrary};
+use super::{AnyMedium, AnyPhase, IntegratorPlan, MediumLibrary, surfaces};
 use crate::Failure;
 use crate::image::Image;
 use crate::spec::{Collisions, LightSpec, SceneSpec};
-use fairflight_media::{Bounds, Homogeneous};
-use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, SceneError, Source, Spectrum};
+use fairflight_media::Bounds;
+use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, SceneError, Source, Spectrum, Surfaces};
 use glam::DVec3;
-use std::sync::Arc;
 
 /// A scene that can be rendered.
 #[derive(Debug)]
@@ -20,7 +19,7 @@ pub struct ScenePlan {
     pub bounds: Bounds,
     /// Whereto it scatters.
     pub phase: AnyPhase,
-    /// Albedo and lights, in as many channels as they need.
+    /// Albedo, lights and surfaces, in as many channels as they need.
     pub spectra: Spectra,
     /// What estimates a pixel.
     pub integrator: IntegratorPlan,
@@ -46,19 +45,23 @@ pub enum Spectra {
 pub struct Radiant<C> {
     /// σ_s/σ_t.
     pub albedo: C,
-    /// What shines.
+    /// What shines, but for surfaces.
     pub lights: Lights<C>,
+    /// What stands in the way, and may shine.
+    pub surfaces: Surfaces<C>,
 }
 
 impl ScenePlan {
     /// Builds the parts of a scene; reads the files that it names.
     ///
     /// # Errors
-    /// If a file cannot be read, or a parameter is not lawful.
+    /// If a file cannot be read, a parameter is not lawful, or the parts do not fit.
     pub fn of(spec: &SceneSpec, library: &MediumLibrary) -> Result<Self, Failure> {
+        surfaces::check(spec)?;
         let (medium, bounds) = match &spec.medium {
             Some(volume) => library.build(&volume.medium, "medium")?,
-            None => nothing()?,
+            // A point, where nothing can be anyway.
+            None => (AnyMedium::Empty, Bounds::sphere(DVec3::ZERO, 0.0).map_err(Failure::refused)?),
         };
         let phase = spec
             .medium
@@ -89,13 +92,6 @@ impl ScenePlan {
             seed: spec.seed,
         })
     }
-}
-
-/// The medium of a scene without one: none, in a point.
-fn nothing() -> Result<(AnyMedium, Bounds), Failure> {
-    let medium = Homogeneous::new(0.0).map_err(Failure::refused)?;
-    let bounds = Bounds::sphere(DVec3::ZERO, 0.0).map_err(Failure::refused)?;
-    Ok((AnyMedium::Homogeneous(Arc::new(medium)), bounds))
 }
 
 /// The picture of each light that is one.
@@ -143,6 +139,6 @@ impl<C: Spectrum> Radiant<C> {
                 }
             }
         }
-        Ok(Self { albedo, lights })
+        Ok(Self { albedo, lights, surfaces: surfaces::build(&spec.surfaces, of)? })
     }
 }

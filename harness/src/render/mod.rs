@@ -10,7 +10,7 @@ use crate::cli::RenderArguments;
 use crate::estimate::{named, read};
 use crate::image::{Exposure, Format, Image};
 use crate::plan::{IntegratorPlan, MediumLibrary, ScenePlan, Spectra};
-use crate::spec::{LightSpec, SceneOverrides, SceneSpec};
+use crate::spec::{LightSpec, SceneOverrides, SceneSpec, SurfaceSpec};
 use crate::{DONE, Environment, Failure};
 use draw::{Drawn, draw};
 use fairflight_sources::derive_seed;
@@ -142,8 +142,8 @@ fn warnings(spec: &SceneSpec, plan: &ScenePlan, moments: &Moments) -> Vec<String
                 .to_owned(),
         );
     }
-    if spec.lights.is_empty() {
-        warnings.push("there is no light".to_owned());
+    if spec.lights.is_empty() && !spec.surfaces.iter().any(SurfaceSpec::emits) {
+        warnings.push("there is no light, the image is black".to_owned());
     }
     warnings
 }

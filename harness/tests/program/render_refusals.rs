@@ -42,7 +42,7 @@ fn cameras_and_numbers_that_are_refused() {
     change_refused(|s| s["camera"]["lens"] = json!(1), &["camera.lens", "unknown key", "look_at"]);
     change_refused(|s| s["samples_per_pixel"] = json!(0), &["samples_per_pixel", "found 0"]);
     change_refused(|s| s["samples_per_pixel"] = json!(4_294_967_296_u64), &["samples_per_pixel"]);
-    change_refused(|s| s["surfaces"] = json!([{}]), &["surfaces", "later version"]);
+    change_refused(|s| s["surfaces"] = json!({}), &["surfaces", "must be a list"]);
     change_refused(|s| s["fog"] = json!(1), &["fog", "unknown key", "integrator"]);
     change_refused(|s| drop(s.as_object_mut().unwrap().remove("lights")), &["lights", "missing"]);
 }

@@ -5,6 +5,8 @@ mod colour;
 mod integrator;
 mod light;
 mod ray_estimator;
+mod surface;
+mod virtual_lights;
 mod volume;
 
 pub use colour::ColourSpec;
@@ -14,6 +16,8 @@ pub use integrator::{
 };
 pub use light::LightSpec;
 pub use ray_estimator::RayEstimatorSpec;
+pub use surface::{MaterialSpec, ShapeSpec, SurfaceSpec};
+pub use virtual_lights::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 pub use volume::{PhaseSpec, VolumeSpec};
 
 use super::Node;
@@ -30,6 +34,8 @@ pub struct SceneSpec {
     pub medium: Option<VolumeSpec>,
     /// What shines.
     pub lights: Vec<LightSpec>,
+    /// What stands in the way, and may shine.
+    pub surfaces: Vec<SurfaceSpec>,
     /// What estimates a pixel.
     pub integrator: IntegratorSpec,
     /// Estimates per pixel.
@@ -61,11 +67,9 @@ impl SceneSpec {
         let medium = root.optional("medium").map(|node| VolumeSpec::read(&node, allow_gain)).transpose()?;
         let lights =
             root.required("lights")?.items()?.iter().map(LightSpec::read).collect::<Result<_, _>>()?;
-        if let Some(surfaces) = root.optional("surfaces")
-            && !surfaces.items()?.is_empty()
-        {
-            return Err(surfaces.refuse("surfaces come with a later version, the list must be empty"));
-        }
+        let surfaces = root.optional("surfaces").map_or(Ok(Vec::new()), |node| node.items())?;
+        let surfaces = surfaces.iter().map(|node| SurfaceSpec::read(node, allow_gain));
+        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
         let integrator = IntegratorSpec::read(&root.required("integrator")?)?;
         let or_override = |key, least, most, instead: Option<u64>| match (root.optional(key), instead) {
             (Some(node), instead) => node.integer(least, most).map(|given| instead.unwrap_or(given)),
@@ -76,13 +80,14 @@ impl SceneSpec {
         let samples = or_override("samples_per_pixel", 1, most, overrides.samples_per_pixel.map(u64::from))?;
         let seed = or_override("seed", 0, u64::MAX, overrides.seed)?;
         root.finish()?;
-        Ok(Self { camera, medium, lights, integrator, samples_per_pixel: samples as u32, seed })
+        Ok(Self { camera, medium, lights, surfaces, integrator, samples_per_pixel: samples as u32, seed })
     }
 
-    /// Whether one channel is enough: no light and no albedo has a colour. What an environment map holds is not known here.
+    /// Whether one channel is enough: no light, no surface and no albedo has a colour. What an environment map holds is not known here.
     #[must_use]
     pub fn is_gray(&self) -> bool {
         self.medium.iter().all(|medium| medium.albedo.is_gray())
             && self.lights.iter().filter_map(LightSpec::strength).all(ColourSpec::is_gray)
+            && self.surfaces.iter().all(SurfaceSpec::is_gray)
     }
 }

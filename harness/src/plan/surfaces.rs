@@ -1,0 +1,79 @@
+//! The surfaces of a scene, and whether lights and integrator fit them.
+
+use crate::Failure;
+use crate::spec::{LightSpec, MaterialSpec, SceneSpec, SurfaceSpec};
+use fairflight_scene::{Material, SceneError, Spectrum, Surface, Surfaces};
+use glam::DVec3;
+
+/// The surfaces of a spec, in the channels that `of` takes of red, green and blue.
+pub(super) fn build<C: Spectrum>(
+    specs: &[SurfaceSpec],
+    of: impl Fn([f64; 3]) -> C,
+) -> Result<Surfaces<C>, Failure> {
+    let one = |spec: &SurfaceSpec| -> Result<Surface<C>, SceneError> {
+        let material = match spec.material {
+            MaterialSpec::Diffuse { reflectance } => Material::Diffuse { reflectance: of(reflectance.rgb()) },
+            MaterialSpec::Mirror => Material::Mirror,
+            MaterialSpec::Dielectric { ior } => Material::Dielectric { ior },
+        };
+        Surface::new(spec.shape.build()?, material, of(spec.emission.rgb()))
+    };
+    let all = specs
+        .iter()
+        .enumerate()
+        .map(|(i, spec)| one(spec).map_err(|error| Failure::refused(format!("surfaces.{i}: {error}"))));
+    Ok(Surfaces::new(all.collect::<Result<_, _>>()?))
+}
+
+/// Whether the parts of a scene fit its surfaces.
+///
+/// # Errors
+/// If the integrator is blind to them, or nothing of a light can be seen because of them.
+pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
+    if let (Some(name), false) = (spec.integrator.blind_to_surfaces(), spec.surfaces.is_empty()) {
+        return Err(Failure::refused(format!(
+            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer and vpl"
+        )));
+    }
+    let camera = spec.camera.origin();
+    for (i, light) in spec.lights.iter().enumerate() {
+        let LightSpec::Point { position, .. } = light else { continue };
+        let position = *position;
+        if let Some(j) = solid_around(&spec.surfaces, camera, |solid| solid.shape.encloses(position)) {
+            return Err(shut_in(&format!("lights.{i}.position"), j));
+        }
+        let glass = |surface: &SurfaceSpec| is_dielectric(surface) && surface.shape.encloses(position);
+        if let Some(j) = spec.surfaces.iter().position(glass) {
+            return Err(Failure::refused(format!(
+                "lights.{i}.position: lies inside the dielectric surfaces.{j}: no connection passes a smooth interface, \
+                 and nothing meets a point"
+            )));
+        }
+    }
+    for (i, emitter) in spec.surfaces.iter().enumerate().filter(|(_, surface)| surface.emits()) {
+        let around = |solid: &SurfaceSpec| solid.shape.encloses_all_of(&emitter.shape);
+        if let Some(j) = solid_around(&spec.surfaces, camera, around) {
+            return Err(shut_in(&format!("surfaces.{i}"), j));
+        }
+    }
+    Ok(())
+}
+
+fn is_dielectric(surface: &SurfaceSpec) -> bool {
+    matches!(surface.material, MaterialSpec::Dielectric { .. })
+}
+
+/// A sphere that light cannot leave, with the light inside and the camera outside: from inside, one sees.
+fn solid_around(
+    surfaces: &[SurfaceSpec],
+    camera: DVec3,
+    encloses: impl Fn(&SurfaceSpec) -> bool,
+) -> Option<usize> {
+    surfaces
+        .iter()
+        .position(|surface| !is_dielectric(surface) && encloses(surface) && !surface.shape.encloses(camera))
+}
+
+fn shut_in(what: &str, solid: usize) -> Failure {
+    Failure::refused(format!("{what}: lies inside the solid surfaces.{solid}, nothing of its light gets out"))
+}
