@@ -3,7 +3,7 @@
 use super::passes::End;
 use super::statistics::Moments;
 use crate::plan::{IntegratorPlan, ScenePlan};
-use crate::spec::{LightSpec, SceneSpec, SurfaceSpec};
+use crate::spec::{ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, SceneSpec, SurfaceSpec};
 
 /// What is to be said; without an `end`, of an image that is still being drawn.
 pub(super) fn warnings(
@@ -22,8 +22,13 @@ pub(super) fn warnings(
     if let Some(walk) = spec.integrator.walk()
         && moments.truncated() > 0
     {
+        let limit = match &spec.integrator {
+            IntegratorSpec::PathTracer(tracer) => format!("max_vertices = {} or ", tracer.max_vertices),
+            IntegratorSpec::Vpl(_) => "too many vertices or ".to_owned(),
+            _ => String::new(),
+        };
         warnings.push(format!(
-            "{} walks were cut after max_collisions = {}: what they had left is missing, a bias",
+            "{} walks were cut by {limit}max_collisions = {}: what they had left is missing, a bias",
             moments.truncated(),
             walk.max_collisions
         ));
@@ -43,6 +48,23 @@ pub(super) fn warnings(
         warnings.push(
             "a point light lies in the medium: the connection with it has no second moment, errors are underrated"
                 .to_owned(),
+        );
+    }
+    let connects = matches!(spec.integrator, IntegratorSpec::PathTracer(_));
+    let is_smooth = |surface: &SurfaceSpec| !matches!(surface.material, MaterialSpec::Diffuse { .. });
+    let no_extent =
+        |light: &LightSpec| matches!(light, LightSpec::Point { .. } | LightSpec::Directional { .. });
+    if connects && spec.surfaces.iter().any(is_smooth) && spec.lights.iter().any(no_extent) {
+        warnings.push(
+            "light of points and directions that smooth surfaces pass on is missing: no path from the camera meets it by \
+             chance"
+                .to_owned(),
+        );
+    }
+    let unbounded = matches!(&spec.integrator, IntegratorSpec::Vpl(vpl) if vpl.clamp == ClampSpec::Unclamped);
+    if unbounded && spec.medium.is_some() {
+        warnings.push(
+            "unbounded connections in a medium have no second moment: errors are underrated".to_owned(),
         );
     }
     if spec.lights.is_empty() && !spec.surfaces.iter().any(SurfaceSpec::emits) {
