@@ -9,6 +9,8 @@
 
 mod correction;
 mod emission;
+#[cfg(test)]
+mod fixtures;
 mod gather;
 mod integrator;
 mod light_paths;
