@@ -173,3 +173,195 @@ impl<C: Spectrum> Correction<C> for Compensation<'_> {
         self.step(gather, &region, (which, 0), source)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{REFLECTANCE, Scene, hazy, in_medium, mean, on_floor, room, vacuum};
+    use crate::{Placement, Visibility};
+    use fairflight_media::EmptySpace;
+    use fairflight_paths::transport::Lobe;
+    use fairflight_scene::Source;
+    use fairflight_sources::Scripted;
+    use fairflight_vpl::Vpl;
+    use glam::{DVec3, dvec3};
+    use std::f64::consts::{FRAC_1_PI, PI};
+
+    const EXACT: CompensationOptions = CompensationOptions::EXACT;
+    /// Straight up from the floor, and straight down from the ceiling.
+    const ACROSS: [f64; 2] = [0.0, 0.0];
+
+    /// A floor at 0 and a ceiling at 1/2 (G = 4 straight across), a point light of irradiance 16 in the middle of both.
+    fn lit() -> Scene<EmptySpace> {
+        vacuum(room(0.5), vec![Source::point(0.25 * DVec3::Z, 4.0 * PI).unwrap()])
+    }
+    /// What the light adds at either surface, per reflectance.
+    const DIRECT: f64 = 16.0 * FRAC_1_PI;
+
+    fn lights() -> [Vpl<f64>; 3] {
+        [(0.1, 3.0), (0.3, 0.7), (-0.2, -1.5)].map(|(x, power)| {
+            let vertex = in_medium(dvec3(x, 0.05, 0.2), DVec3::X);
+            Vpl { vertex, incident: DVec3::X, power, bounce: 1 }
+        })
+    }
+
+    /// The vertex straight above [`on_floor`].
+    fn on_ceiling() -> Vertex {
+        Vertex { position: 0.5 * DVec3::Z, lobe: Lobe::Diffuse { normal: DVec3::NEG_Z, surface: 1 } }
+    }
+
+    fn connected(y: &Vertex, bound: f64, which: Connected) -> f64 {
+        lit().gather(&lights(), bound).connected(y, which, &mut Scripted::new([]))
+    }
+
+    fn recovered(
+        options: CompensationOptions,
+        bound: f64,
+        which: Connected,
+        script: &[f64],
+    ) -> (f64, (u64, u64)) {
+        let (scene, vpls, mean) = (lit(), lights(), mean(0.5));
+        let mut compensation = Compensation::new(options, &mean);
+        let mut source = Scripted::new(script.iter().copied());
+        let found = compensation.recover(&mut scene.gather(&vpls, bound), &on_floor(), which, &mut source);
+        assert_eq!(source.remaining(), 0);
+        (found, compensation.vertices())
+    }
+
+    fn one_step() -> CompensationOptions {
+        CompensationOptions { steps: Some(1), ..EXACT }
+    }
+
+    #[test]
+    fn one_step_by_hand() {
+        // Across G = 4: with b = 1 a quarter is left to connections, three to the vertex above.
+        let weight = REFLECTANCE * 0.75;
+        let above = connected(&on_ceiling(), 1.0, Connected::All);
+        let (found, vertices) = recovered(one_step(), 1.0, Connected::All, &ACROSS);
+        assert!((found - weight * (DIRECT + above)).abs() < 1e-14);
+        assert_eq!(vertices, (1, 1));
+        // The connections of the vertex are bounded as well; b = 0 leaves none of them, and is path tracing.
+        assert!(above.abs() < connected(&on_ceiling(), f64::INFINITY, Connected::All).abs());
+        let (found, _) = recovered(one_step(), 0.0, Connected::All, &ACROSS);
+        assert!((found - REFLECTANCE * DIRECT).abs() < 1e-14);
+        // Emitters belong to all lights together, a share of them to each.
+        for k in 0..3 {
+            let (found, _) = recovered(one_step(), 1.0, Connected::One(k), &ACROSS);
+            let above = connected(&on_ceiling(), 1.0, Connected::One(k));
+            assert!((found - weight * (DIRECT / 3.0 + above)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn every_strategy_sums_the_same() {
+        // With the same vertex for all of them the strategies differ by rounding alone.
+        let strategy = |strategy, steps| CompensationOptions { strategy, steps: Some(steps), ..EXACT };
+        for steps in 1..4usize {
+            let across = [0.0; 2 * 3];
+            let script = &across[..2 * steps];
+            let limit = steps as u32;
+            let (all, once) = recovered(strategy(Strategy::OneToMany, limit), 1.0, Connected::All, script);
+            let (each, thrice) =
+                recovered(strategy(Strategy::ManyToOne, limit), 1.0, Connected::All, &script.repeat(3));
+            let mean = (0..3)
+                .map(|k| {
+                    3.0 * recovered(strategy(Strategy::OneToOne, limit), 1.0, Connected::One(k), script).0
+                })
+                .sum::<f64>()
+                / 3.0;
+            assert!((all - each).abs() < 1e-14 && (all - mean).abs() < 1e-14, "{all} {each} {mean}");
+            assert_eq!((once.0, thrice.0), (steps as u64, 3 * steps as u64));
+        }
+        assert_eq!(Strategy::OneToMany.pairing(), Pairing::Every);
+        assert_eq!(Strategy::ManyToOne.pairing(), Pairing::Every);
+        assert_eq!(Strategy::OneToOne.pairing(), Pairing::One);
+        let mean = mean(0.5);
+        let one = Compensation::new(strategy(Strategy::OneToOne, 1), &mean);
+        assert_eq!(one.pairing(), Pairing::One);
+    }
+
+    #[test]
+    fn steps_follow_each_other_until_they_are_used_up() {
+        let weight = REFLECTANCE * 0.75;
+        let up = weight * (DIRECT + connected(&on_ceiling(), 1.0, Connected::All));
+        let down = weight * weight * (DIRECT + connected(&on_floor(), 1.0, Connected::All));
+        let steps = |steps, script: &[f64]| {
+            recovered(CompensationOptions { steps: Some(steps), ..EXACT }, 1.0, Connected::All, script).0
+        };
+        assert!((steps(2, &[0.0; 4]) - up - down).abs() < 1e-14);
+        assert!((steps(3, &[0.0; 6]) - up * (1.0 + weight * weight) - down).abs() < 1e-13);
+        assert_eq!(steps(0, &[]), 0.0);
+        // Unlimited, roulette with the weight ends it; what survives counts as much more.
+        let unlimited = |script: &[f64]| recovered(EXACT, 1.0, Connected::All, script).0;
+        assert!((unlimited(&[0.0, 0.0, weight]) - up).abs() < 1e-14);
+        assert!(
+            (unlimited(&[0.0, 0.0, 0.999 * weight, 0.0, 0.0, weight]) - up - down / weight).abs() < 1e-13
+        );
+    }
+
+    #[test]
+    fn what_lies_beyond_the_bound_counts_for_nothing() {
+        // At the cosine c the other surface is 1/(2c) away, with G = 4c⁴: inside the region of radius 1 from c = 0.5 on, inside the bound
+        // from c = 0.707 on. A cosine is √(1 − u).
+        for (u, inside) in [(0.45, true), (0.55, false), (0.8, false)] {
+            let (found, vertices) = recovered(one_step(), 1.0, Connected::All, &[u, 0.3]);
+            assert_eq!((found != 0.0, vertices), (inside, (1, u64::from(inside))), "{u}");
+        }
+    }
+
+    #[test]
+    fn where_nothing_is_bounded_nothing_is_recovered_and_nothing_drawn() {
+        for strategy in [Strategy::OneToMany, Strategy::ManyToOne] {
+            let options = CompensationOptions { strategy, ..EXACT };
+            assert_eq!(recovered(options, f64::INFINITY, Connected::All, &[]), (0.0, (0, 0)));
+        }
+        let (scene, vpls, mean) = (lit(), lights(), mean(0.5));
+        let mut gather = scene.gather(&vpls, 1.0);
+        gather.term = Term::Excess(1.0);
+        let mut source = Scripted::new([]);
+        let found =
+            Compensation::new(EXACT, &mean).recover(&mut gather, &on_floor(), Connected::All, &mut source);
+        assert_eq!(found, 0.0);
+    }
+
+    #[test]
+    fn without_virtual_point_lights_emitters_are_still_seen() {
+        let (scene, mean) = (lit(), mean(0.5));
+        for strategy in [Strategy::OneToMany, Strategy::ManyToOne, Strategy::OneToOne] {
+            let options = CompensationOptions { strategy, ..one_step() };
+            let mut gather = scene.gather(&[], 1.0);
+            let mut source = Scripted::new(ACROSS);
+            let found = Compensation::new(options, &mean).recover(
+                &mut gather,
+                &on_floor(),
+                Connected::All,
+                &mut source,
+            );
+            assert!((found - REFLECTANCE * 0.75 * DIRECT).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn in_the_medium_there_are_no_cosines() {
+        let scene = hazy(room(2.0));
+        let vpls = lights();
+        let (mean, y) = (mean(0.5), in_medium(DVec3::Z, DVec3::Z));
+        for placement in [Placement::FreeFlight, Placement::LocallyHomogeneous] {
+            let options = CompensationOptions { placement, visibility: Visibility::Local, ..one_step() };
+            let script =
+                [&[0.0, 0.0, 0.1][..], if placement == Placement::FreeFlight { &[0.1][..] } else { &[] }];
+            let mut gather = scene.gather(&vpls, 4.0);
+            let region = Region::new(y, 4.0, &options, &gather);
+            let mut source = Scripted::new(script.concat());
+            let x = region.place(&options, &mean, &mut gather, &mut source).unwrap();
+            let distance = x.vertex.position.distance(y.position);
+            let lost = 1.0 - 4.0 * distance * distance;
+            assert!(lost > 0.0 && x.vertex.surface().is_none());
+            let above = gather.connected(&x.vertex, Connected::All, &mut Scripted::new([]));
+            let mut source = Scripted::new(script.concat());
+            let found =
+                Compensation::new(options, &mean).recover(&mut gather, &y, Connected::All, &mut source);
+            assert!((found - x.factor * lost * above).abs() < 1e-14 * above.abs(), "{placement:?}");
+        }
+    }
+}

@@ -107,3 +107,38 @@ impl CompensationOptions {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use CompensationOptions as Options;
+
+    #[test]
+    fn an_approximate_transmittance_needs_vertices_that_it_places() {
+        let approximate = Options { transmittance: TransmittanceUse::Approximate, ..Options::EXACT };
+        assert_eq!(approximate.checked(), Err(OptionsError::ApproximateFreeFlight));
+        let local = Options { placement: Placement::LocallyHomogeneous, ..approximate };
+        assert_eq!(local.checked(), Ok(local));
+        assert_eq!(Options::EXACT.checked(), Ok(Options::EXACT));
+    }
+
+    #[test]
+    fn what_is_biased_by_design_says_so() {
+        let unbiased = [
+            Options::EXACT,
+            Options { strategy: Strategy::ManyToOne, ..Options::EXACT },
+            Options { strategy: Strategy::OneToOne, visibility: Visibility::Local, ..Options::EXACT },
+            Options { placement: Placement::LocallyHomogeneous, ..Options::EXACT },
+        ];
+        assert!(unbiased.iter().all(|options| options.biased_by_design().is_none()));
+        let local = unbiased[3];
+        let biased = [
+            (Options { steps: Some(3), ..Options::EXACT }, "steps"),
+            (Options { transmittance: TransmittanceUse::Approximate, ..local }, "transmittance"),
+            (Options { visibility: Visibility::Ignored, ..Options::EXACT }, "visibility"),
+        ];
+        for (options, word) in biased {
+            assert!(options.biased_by_design().unwrap().contains(word), "{options:?}");
+        }
+    }
+}

@@ -26,6 +26,33 @@ use fairflight_sources::UniformSource;
 ///
 /// **Roulette** looks at the vertex alone (reflectance, or what the collision left of the energy), not at the path before: bidirectional
 /// weights will rely on that.
+///
+/// ```
+/// use fairflight_collision::Version;
+/// use fairflight_media::{Bounds, EmptySpace, Line, phase::Isotropic};
+/// use fairflight_paths::{Heuristic, Integrator, PathTracer, Uniform, Walk, transport::World};
+/// use fairflight_scene::surface::Rectangle;
+/// use fairflight_scene::{Background, Lights, Material, Shape, Source, Surface, Surfaces, Volume};
+/// use fairflight_sources::Seeded;
+/// use fairflight_transmittance::Regular;
+/// use glam::{DVec3, dvec3};
+/// use std::f64::consts::PI;
+///
+/// // A floor of reflectance 1/2, a point light of power 8π² two above it, and nothing else that could send light back.
+/// let floor = Rectangle::new(dvec3(-1.0, -1.0, 0.0), 2.0 * DVec3::X, 2.0 * DVec3::Y).unwrap();
+/// let floor = Surface::new(Shape::Rectangle(floor), Material::Diffuse { reflectance: 0.5 }, 0.0).unwrap();
+/// let light = Source::point(dvec3(0.0, 0.0, 2.0), 8.0 * PI * PI).unwrap();
+/// let bounds = Bounds::sphere(DVec3::ZERO, 1.0).unwrap();
+/// let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: Isotropic };
+/// let (surfaces, lights) = (Surfaces::new(vec![floor]), Lights { background: Background::dark(), sources: vec![light] });
+///
+/// let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+/// let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).unwrap());
+/// let mut tracer = PathTracer::new(world, walk, Regular, Heuristic::Balance);
+/// let radiance = tracer.radiance(&Line { origin: DVec3::Z, direction: -DVec3::Z }, &mut Seeded::new(1));
+/// // reflectance/π · power/(4π distance²)
+/// assert!((radiance - 0.25).abs() < 1e-15);
+/// ```
 #[derive(Debug)]
 pub struct PathTracer<'s, G, M, P, C, R, T> {
     world: World<'s, G, M, P, C>,
@@ -69,5 +96,57 @@ where
         let traced = world.trace(walk, (*heuristic, *max_vertices), segment, shadow, source);
         *truncated += u64::from(traced.is_cut);
         traced.radiance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Uniform;
+    use crate::transport::fixtures::{ball, diffuse, hazy, vacuum};
+    use fairflight_collision::Version;
+    use fairflight_sources::{Scripted, Seeded};
+    use fairflight_transmittance::Regular;
+    use glam::DVec3;
+
+    fn walk() -> Walk<Uniform> {
+        Walk::new(Version::Terminating, Uniform::new(0.5).unwrap())
+    }
+
+    fn up() -> Line {
+        Line { origin: DVec3::ZERO, direction: DVec3::Z }
+    }
+
+    #[test]
+    fn cut_paths_are_counted() {
+        let scene = vacuum(vec![ball(DVec3::ZERO, 1.0, diffuse(0.5), 3.0)], vec![]);
+        let mut tracer =
+            PathTracer::new(scene.world(), walk(), Regular, Heuristic::Power).with_max_vertices(2);
+        // Emission, roulette and a direction, twice: a throughput of 0.5 that survives with 0.5 stays 1.
+        let mut both = Scripted::new([0.4, 0.3, 0.6, 0.4, 0.3, 0.6]);
+        assert_eq!(tracer.radiance(&up(), &mut both), 6.0);
+        assert_eq!((tracer.truncated(), both.remaining()), (1, 0));
+        assert_eq!(tracer.radiance(&up(), &mut Scripted::new([0.5])), 3.0);
+        assert_eq!(tracer.truncated(), 1);
+        assert_eq!(tracer.radiance(&up(), &mut Scripted::new([0.4, 0.3, 0.6, 0.7])), 6.0);
+        assert_eq!(tracer.truncated(), 1);
+    }
+
+    #[test]
+    fn a_furnace_is_equally_bright_by_every_heuristic() {
+        // A glowing ball that reflects half, with a haze inside that absorbs nothing: emission/(1 − reflectance) = 1.
+        let mut scene = hazy(0.5, vec![ball(DVec3::ZERO, 1.0, diffuse(0.5), 0.5)], vec![]);
+        scene.volume.albedo = 1.0;
+        for heuristic in [Heuristic::Balance, Heuristic::Power, Heuristic::Maximum] {
+            let mut tracer = PathTracer::new(scene.world(), walk(), Regular, heuristic);
+            let mut source = Seeded::new(3);
+            let found: Vec<f64> = (0..20_000).map(|_| tracer.radiance(&up(), &mut source)).collect();
+            let n = found.len() as f64;
+            let mean = found.iter().sum::<f64>() / n;
+            let variance = found.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+            // Five standard errors: false alarm 6e-7.
+            assert!((mean - 1.0).abs() < 5.0 * (variance / n).sqrt(), "{heuristic:?}: {mean}");
+            assert_eq!(tracer.truncated(), 0);
+        }
     }
 }

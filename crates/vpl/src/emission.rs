@@ -120,3 +120,127 @@ impl Sides {
         if closed && !surface.shape.encloses(observer) { Self::Outer } else { Self::Both }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{Scene, ball, diffuse, square, vacuum};
+    use fairflight_media::EmptySpace;
+    use fairflight_scene::{EnvironmentMap, Material, Source};
+    use fairflight_sources::Scripted;
+    use glam::dvec3;
+
+    const BALL: (DVec3, f64) = (DVec3::ZERO, 2.0);
+    const FAR: DVec3 = DVec3::new(50.0, 0.0, 0.0);
+
+    fn emitters(scene: &Scene<EmptySpace, f64>, observer: DVec3) -> Emitters<f64> {
+        Emitters::new(&scene.lights, &scene.surfaces, BALL, observer)
+    }
+
+    fn power(surface: Surface<f64>, observer: DVec3) -> f64 {
+        emitters(&vacuum(vec![surface], vec![]), observer).power()
+    }
+
+    #[test]
+    fn powers_of_lights_and_surfaces() {
+        let lights = |sources| emitters(&vacuum(vec![], sources), FAR).power();
+        assert_eq!(lights(vec![Source::point(DVec3::ONE, 5.0).unwrap()]), 5.0);
+        // On the disc of the ball, π 2².
+        let parallel = lights(vec![Source::directional(DVec3::Z, 5.0).unwrap()]);
+        assert!((parallel - 20.0 * PI).abs() < 1e-14);
+        // π · radiance · area, on both sides of a rectangle.
+        assert!((power(square(0.0, 1.0, diffuse(0.5), 3.0), FAR) - 24.0 * PI).abs() < 1e-13);
+        assert_eq!(power(square(0.0, 1.0, diffuse(0.5), 0.0), FAR), 0.0);
+        // Of a sphere that nobody sees from inside the outer side: π · 3 · 4π.
+        let outer = 12.0 * PI * PI;
+        let lamp = |material| ball(DVec3::ZERO, 1.0, material, 3.0);
+        assert!((power(lamp(diffuse(0.5)), FAR) - outer).abs() < 1e-13);
+        assert!((power(lamp(diffuse(0.5)), 0.5 * DVec3::X) - 2.0 * outer).abs() < 1e-13);
+        // Out of glass light comes from the inside, too.
+        assert!((power(lamp(Material::Dielectric { ior: 1.5 }), FAR) - 2.0 * outer).abs() < 1e-13);
+        assert!((power(lamp(Material::Mirror), FAR) - outer).abs() < 1e-13);
+    }
+
+    #[test]
+    fn the_background_emits() {
+        let mut scene = vacuum(vec![], vec![]);
+        scene.lights.background.constant = 0.25;
+        scene.lights.background.maps.push(EnvironmentMap::new(2, 2, vec![0.75; 4]).unwrap());
+        // 4π · π 2², of radiance 1 in all.
+        assert!((emitters(&scene, FAR).power() - 16.0 * PI * PI).abs() < 1e-12);
+    }
+
+    /// A point light of power 1, a lamp of 3 on both sides together, and one that is black.
+    fn mixed() -> Scene<EmptySpace, f64> {
+        let lamp = square(1.0, 0.5, diffuse(0.0), 1.5 / PI);
+        let dark = square(2.0, 0.5, diffuse(0.0), 0.0);
+        vacuum(vec![dark, lamp], vec![Source::point(dvec3(0.0, 0.0, 5.0), 1.0).unwrap()])
+    }
+
+    fn start(u: &[f64]) -> Start<f64> {
+        let scene = mixed();
+        let mut source = Scripted::new(u.iter().copied());
+        let start = emitters(&scene, FAR).sample(&scene.lights, &scene.surfaces, &mut source).unwrap();
+        assert_eq!(source.remaining(), 0);
+        start
+    }
+
+    #[test]
+    fn starts_are_chosen_in_proportion_and_carry_all_power() {
+        for u in [0.0, 0.2, 0.249_999] {
+            // on_sphere(1/2, 1/4) is the y axis.
+            let light = start(&[u, 0.5, 0.25, 0.9, 0.9, 0.9]);
+            assert_eq!(light.segment.line.origin, dvec3(0.0, 0.0, 5.0));
+            assert!((light.segment.line.direction - DVec3::Y).length() < 1e-15);
+            assert_eq!((light.segment.from, light.segment.to), (None, None));
+            assert!((light.power - 4.0).abs() < 1e-14);
+        }
+        for u in [0.250_001, 0.7, 1.0 - f64::EPSILON] {
+            for (side, normal) in [(0.49, DVec3::NEG_Z), (0.5, DVec3::Z)] {
+                let lamp = start(&[u, 0.5, 0.25, side, 0.0, 0.0]);
+                assert_eq!(lamp.segment.line.origin, dvec3(0.0, -0.25, 1.0));
+                assert_eq!(lamp.segment.line.direction, normal);
+                assert_eq!((lamp.segment.from, lamp.segment.length), (Some(1), f64::INFINITY));
+                assert!((lamp.power - 4.0).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn a_sphere_starts_outwards_unless_somebody_stands_inside() {
+        let scene = vacuum(vec![ball(DVec3::ZERO, 1.0, diffuse(0.0), 1.0)], vec![]);
+        for (observer, side, sign) in [(FAR, 0.1, 1.0), (DVec3::ZERO, 0.1, -1.0), (DVec3::ZERO, 0.9, 1.0)] {
+            let mut source = Scripted::new([0.5, 0.3, 0.6, side, 0.0, 0.0]);
+            let start =
+                emitters(&scene, observer).sample(&scene.lights, &scene.surfaces, &mut source).unwrap();
+            let line = start.segment.line;
+            assert!((line.direction - sign * line.origin).length() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn where_nothing_shines_nothing_starts() {
+        let scene =
+            vacuum(vec![square(1.0, 1.0, diffuse(0.5), 0.0)], vec![Source::point(DVec3::ONE, 0.0).unwrap()]);
+        let emitters = emitters(&scene, FAR);
+        assert_eq!(emitters.power(), 0.0);
+        assert!(emitters.sample(&scene.lights, &scene.surfaces, &mut Scripted::new([])).is_none());
+    }
+
+    #[test]
+    fn colours_are_chosen_by_their_greatest_channel() {
+        let red = Source::point(DVec3::ZERO, dvec3(3.0, 0.0, 0.0)).unwrap();
+        let gray = Source::point(DVec3::ONE, DVec3::ONE).unwrap();
+        let scene = vacuum(vec![], vec![red, gray]);
+        let emitters = Emitters::new(&scene.lights, &scene.surfaces, BALL, FAR);
+        assert_eq!(emitters.power(), dvec3(4.0, 1.0, 1.0));
+        let start = |u: f64| {
+            let mut source = Scripted::new([u, 0.5, 0.5, 0.5, 0.5, 0.5]);
+            emitters.sample(&scene.lights, &scene.surfaces, &mut source).unwrap().power
+        };
+        assert!((start(0.74) - dvec3(4.0, 0.0, 0.0)).length() < 1e-14);
+        assert!((start(0.76) - DVec3::splat(4.0)).length() < 1e-14);
+        // On average all power, per channel.
+        assert!((0.75 * start(0.1) + 0.25 * start(0.9) - emitters.power()).length() < 1e-14);
+    }
+}

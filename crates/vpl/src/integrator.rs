@@ -205,3 +205,193 @@ where
         self.arriving(segment, 0, source)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{Scene, SceneGather, diffuse, hazy, on_surface, square, vacuum, vpl};
+    use crate::{Term, Uncorrected, Vpl};
+    use fairflight_scene::{Material, Source};
+    use fairflight_sources::Scripted;
+    use glam::{DVec3, dvec3};
+    use std::f64::consts::{FRAC_1_PI, PI};
+
+    /// Adds the same everywhere, and keeps what it was asked for.
+    #[derive(Debug)]
+    struct Spy {
+        adds: f64,
+        asked: Vec<Connected>,
+    }
+
+    fn spy(adds: f64) -> Spy {
+        Spy { adds, asked: Vec::new() }
+    }
+
+    impl<C: Spectrum> Correction<C> for Spy {
+        fn recover<G, M, P, R, T, S>(
+            &mut self,
+            _gather: &mut Gather<'_, G, M, P, C, R, T>,
+            _y: &Vertex,
+            which: Connected,
+            _source: &mut S,
+        ) -> C
+        where
+            G: Geometry<C>,
+            M: Medium,
+            P: PhaseFunction,
+            R: SamplingExtinction,
+            T: RayTransmittance<M>,
+            S: UniformSource + ?Sized,
+        {
+            self.asked.push(which);
+            C::splat(self.adds)
+        }
+    }
+
+    const ALL: Term = Term::Bounded(f64::INFINITY);
+
+    fn down() -> Line {
+        Line { origin: DVec3::Z, direction: DVec3::NEG_Z }
+    }
+
+    /// On a ceiling at the height 2, above the floor at 0.
+    fn lights(count: usize) -> Vec<Vpl<f64>> {
+        (0..count)
+            .map(|i| vpl(on_surface(dvec3(0.5 * i as f64, 0.0, 2.0), DVec3::NEG_Z, 1), 1.0 + i as f64))
+            .collect()
+    }
+
+    fn room() -> Scene<fairflight_media::EmptySpace, f64> {
+        let surfaces = vec![square(0.0, 5.0, diffuse(0.5), 0.0), square(2.0, 5.0, diffuse(0.5), 0.0)];
+        vacuum(surfaces, vec![Source::point(dvec3(0.0, 0.0, 0.5), PI).unwrap()])
+    }
+
+    /// What the light of [`room`] adds at the origin.
+    const DIRECT: f64 = 0.5 * FRAC_1_PI;
+
+    fn by_hand(vpls: &[Vpl<f64>]) -> Vec<f64> {
+        let floor = on_surface(DVec3::ZERO, DVec3::Z, 0);
+        let room = room();
+        let mut gather = room.gather(vpls, ALL);
+        (0..vpls.len()).map(|i| 0.5 * gather.one(&floor, i, &mut Scripted::new([]))).collect()
+    }
+
+    fn render<M: fairflight_media::LineThickness>(
+        gather: SceneGather<'_, M>,
+        how: (u32, Pairing),
+        component: Component,
+        (correction, script): (Spy, &[f64]),
+    ) -> (f64, Vec<Connected>, u64) {
+        let mut integrator = VplIntegrator::new(gather, how, correction).component(component);
+        let mut source = Scripted::new(script.iter().copied());
+        let radiance = integrator.radiance(&down(), &mut source);
+        assert_eq!(source.remaining(), 0);
+        (radiance, integrator.correction().asked.clone(), integrator.truncated())
+    }
+
+    #[test]
+    fn every_light_once_from_one_point() {
+        let (room, vpls) = (room(), lights(3));
+        // Where nothing scatters on the way all flights end alike: one is enough.
+        let found = render(room.gather(&vpls, ALL), (7, Pairing::Every), Component::All, (spy(0.25), &[]));
+        let expected = by_hand(&vpls).iter().sum::<f64>() + 0.5 * 0.25 + DIRECT;
+        assert!((found.0 - expected).abs() < 1e-15, "{found:?}");
+        assert_eq!((found.1, found.2), (vec![Connected::All], 0));
+    }
+
+    #[test]
+    fn one_light_per_point_is_stratified_and_counts_for_all() {
+        let (room, vpls) = (room(), lights(8));
+        let variates = [0.0, 0.999, 0.5, 0.49];
+        let found =
+            render(room.gather(&vpls, ALL), (4, Pairing::One), Component::All, (spy(0.25), &variates));
+        let chosen = [0, 3, 5, 6];
+        assert_eq!(found.1, chosen.map(Connected::One));
+        let each = by_hand(&vpls);
+        let mean = chosen.iter().map(|&i| each[i]).sum::<f64>() / 4.0;
+        assert!((found.0 - 8.0 * (mean + 0.5 * 0.25) - DIRECT).abs() < 1e-14);
+        // More points than lights: two for each.
+        let vpls = lights(2);
+        let found =
+            render(room.gather(&vpls, ALL), (4, Pairing::One), Component::All, (spy(0.25), &[0.999; 4]));
+        assert_eq!(found.1, [0, 0, 1, 1].map(Connected::One));
+    }
+
+    #[test]
+    fn without_lights_emitters_and_the_correction_remain() {
+        for pairing in [Pairing::Every, Pairing::One] {
+            let room = room();
+            let found = render(room.gather(&[], ALL), (1, pairing), Component::All, (spy(0.25), &[]));
+            assert!((found.0 - 0.5 * 0.25 - DIRECT).abs() < 1e-15);
+            assert_eq!(found.1, [Connected::All]);
+        }
+    }
+
+    #[test]
+    fn components_are_the_parts_of_all() {
+        let (room, vpls) = (room(), lights(3));
+        let part = |component, term| {
+            render(room.gather(&vpls, term), (1, Pairing::Every), component, (spy(0.25), &[])).0
+        };
+        let bounded = Term::Bounded(0.2);
+        let (all, connected, corrected) = (
+            part(Component::All, bounded),
+            part(Component::Connections, bounded),
+            part(Component::Correction, bounded),
+        );
+        assert!((all - connected - corrected - DIRECT).abs() < 1e-15);
+        assert_eq!(corrected, 0.5 * 0.25);
+        // What bounding takes away, seen by the lights themselves.
+        let lost = part(Component::Connections, Term::Excess(0.2));
+        assert!(lost > 0.0);
+        assert!((connected + lost - part(Component::Connections, ALL)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_lamp_is_seen_once_directly_or_in_a_mirror() {
+        let lamp = |z| square(z, 5.0, diffuse(0.0), 3.0);
+        // The lamp reflects nothing, but where it is seen a direction is drawn all the same.
+        for surfaces in [vec![lamp(0.0)], vec![square(0.0, 5.0, Material::Mirror, 0.0), lamp(4.0)]] {
+            let scene = vacuum(surfaces, vec![]);
+            let seen = |component, script: &[f64]| {
+                let mut integrator =
+                    VplIntegrator::new(scene.gather(&[], ALL), (1, Pairing::Every), Uncorrected)
+                        .component(component);
+                let mut source = Scripted::new(script.iter().copied());
+                let radiance = integrator.radiance(&down(), &mut source);
+                assert_eq!((source.remaining(), integrator.truncated()), (0, 0));
+                radiance
+            };
+            // Straight away from the lamp into nothing, or into the mirror and back to the lamp, where roulette ends it.
+            let has_mirror = scene.surfaces.has_specular();
+            assert_eq!(seen(Component::All, if has_mirror { &[0.0, 0.0, 0.0] } else { &[0.0, 0.0] }), 3.0);
+            assert_eq!(seen(Component::Connections, &[]), 0.0);
+            assert_eq!(seen(Component::Correction, &[]), 0.0);
+        }
+    }
+
+    #[test]
+    fn the_mean_over_flights() {
+        let scene = hazy(vec![square(0.0, 5.0, diffuse(0.5), 0.0)], vec![]);
+        let hazy = |script: &[f64]| {
+            let gather = scene.gather(&[], ALL);
+            render(gather, (2, Pairing::Every), Component::Correction, (spy(1.0), script))
+        };
+        // Of optical thickness 1/2: u below 0.39 collides, and the albedo is 1/2.
+        assert_eq!(hazy(&[0.2, 0.4, 0.5]).0, 0.5 * (1.0 + 0.5));
+        assert_eq!(hazy(&[0.2, 0.6, 0.5]).0, 0.25);
+        assert_eq!(hazy(&[0.5, 0.2, 0.4]).1, [Connected::All; 2]);
+        let mut gather = scene.gather(&[], ALL);
+        gather.walk = gather.walk.with_max_collisions(0);
+        let cut = render(gather, (2, Pairing::Every), Component::Correction, (spy(1.0), &[0.2, 0.5]));
+        assert_eq!((cut.0, cut.2), (0.25, 1));
+    }
+
+    #[test]
+    fn an_endless_chain_of_mirrors_is_cut_and_counted() {
+        let mirrors = vec![square(0.0, 5.0, Material::Mirror, 0.0), square(2.0, 5.0, Material::Mirror, 0.0)];
+        let scene = vacuum(mirrors, vec![]);
+        let found = render(scene.gather(&[], ALL), (1, Pairing::Every), Component::All, (spy(1.0), &[]));
+        assert_eq!(found, (0.0, vec![], 1));
+    }
+}

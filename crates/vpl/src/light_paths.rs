@@ -1,12 +1,11 @@
 //! Light paths, whose vertices are virtual point lights (engelhardt-2013 section 3.2, raab-2008 section 4.2).
 
-use crate::{Emitters, Vpl};
+use crate::{Emitters, KeepNear, Vpl};
 use fairflight_media::{Line, Medium, PhaseFunction};
 use fairflight_paths::transport::{Event, World};
 use fairflight_paths::{SamplingExtinction, Walk};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
-use glam::DVec3;
 
 /// Light paths through surfaces and medium.
 ///
@@ -33,26 +32,6 @@ pub struct LightPaths<'s, G, M, P, C, R> {
     walk: Walk<R>,
     keep_near: Option<KeepNear>,
     max_vertices: u32,
-}
-
-/// Keeps what is near to somebody, and of the rest as much as counts (engelhardt-2013 section 7).
-///
-/// The paper keeps the virtual point lights that are close to the camera, a bias. Here one at the distance r is kept with probability
-/// min(1, (radius/r)²) and weighs as much more: as their number falls with 1/r², so does what one of them could add.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KeepNear {
-    /// Near to where.
-    pub point: DVec3,
-    /// Within this distance all are kept \[length\], positive.
-    pub radius: f64,
-}
-
-impl KeepNear {
-    /// The probability to keep what lies at `position`.
-    #[must_use]
-    pub fn probability(&self, position: DVec3) -> f64 {
-        (self.radius * self.radius / (position - self.point).length_squared()).min(1.0)
-    }
 }
 
 /// Where the power of light paths went.
@@ -195,4 +174,206 @@ where
 fn share_absorbed<C: Spectrum>(scattered: C, albedo: C) -> C {
     let ratio = albedo.map(|a| if a > 0.0 { (1.0 - a) / a } else { 0.0 });
     scattered * ratio
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{Scene, ball, diffuse, hazy, on_surface, square, vacuum, walk};
+    use fairflight_collision::Version;
+    use fairflight_paths::Uniform;
+    use fairflight_scene::{Material, Source};
+    use fairflight_sources::{Scripted, Seeded};
+    use glam::{DVec3, dvec3};
+    use std::f64::consts::LN_2;
+
+    /// Of the point light of each test; each path carries a quarter of it.
+    const POWER: f64 = 8.0;
+    const CARRIED: f64 = 2.0;
+
+    /// What one path of these variates, all of which it must use, leaves behind.
+    fn traced<M: Medium, C: Spectrum>(
+        scene: &Scene<M, C>,
+        change: impl FnOnce(Paths<'_, M, C>) -> Paths<'_, M, C>,
+        script: &[f64],
+    ) -> (Vec<Vpl<C>>, Ledger<C>) {
+        let emitters = emitters(scene);
+        let paths = change(LightPaths::new(scene.world(), &emitters, walk()));
+        let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());
+        let mut source = Scripted::new(script.iter().copied());
+        paths.trace(CARRIED / POWER, &mut ledger, &mut source, |vpl| vpls.push(vpl));
+        assert_eq!(source.remaining(), 0);
+        (vpls, ledger)
+    }
+
+    type Paths<'s, M, C> = LightPaths<
+        's,
+        fairflight_scene::Surfaces<C>,
+        M,
+        fairflight_media::phase::HenyeyGreenstein,
+        C,
+        Uniform,
+    >;
+
+    fn emitters<M, C: Spectrum>(scene: &Scene<M, C>) -> Emitters<C> {
+        Emitters::new(&scene.lights, &scene.surfaces, (DVec3::ZERO, 20.0), DVec3::ZERO)
+    }
+
+    fn light<C: Spectrum>(z: f64) -> Vec<Source<C>> {
+        vec![Source::point(z * DVec3::Z, C::splat(POWER)).unwrap()]
+    }
+
+    /// The choice of the only light, and its direction: cosine 1 − 2u with the z axis, towards x.
+    fn from_light(u: f64) -> [f64; 6] {
+        [0.5, u, 0.0, 0.5, 0.5, 0.5]
+    }
+
+    fn script(u: f64, rest: &[f64]) -> Vec<f64> {
+        [&from_light(u)[..], rest].concat()
+    }
+
+    #[test]
+    fn the_first_bounce_on_a_floor_under_a_point_light() {
+        // A cosine of 1/2 downwards, from the height 1: distance 2, √3 aside. From below it is the other side.
+        for (z, u, normal) in [(1.0, 0.75, DVec3::Z), (-1.0, 0.25, DVec3::NEG_Z)] {
+            let scene = vacuum(vec![square(0.0, 5.0, diffuse(0.25), 0.0)], light(z));
+            let (vpls, ledger) = traced(&scene, |paths| paths, &script(u, &[0.25]));
+            let [vpl] = vpls[..] else { panic!("{vpls:?}") };
+            let incident = dvec3(0.75f64.sqrt(), 0.0, -0.5 * z);
+            assert!((vpl.incident - incident).length() < 1e-15);
+            let expected = on_surface(dvec3(3f64.sqrt(), 0.0, 0.0), normal, 0);
+            assert!((vpl.vertex.position - expected.position).length() < 1e-15);
+            assert_eq!((vpl.vertex.lobe, vpl.bounce), (expected.lobe, 1));
+            assert!((vpl.power - 0.25 * CARRIED).abs() < 1e-15 && !vpl.is_in_medium());
+            assert_eq!((ledger.emitted, ledger.escaped, ledger.truncated), (CARRIED, 0.0, 0));
+            assert_eq!((ledger.scattered, ledger.absorbed, ledger.paths), (0.5, 1.5, 1));
+        }
+    }
+
+    #[test]
+    fn roulette_keeps_the_power_of_those_that_survive() {
+        let surfaces = vec![square(0.0, 5.0, diffuse(0.25), 0.0), square(3.0, 5.0, diffuse(0.5), 0.0)];
+        let scene = vacuum(surfaces, light(1.0));
+        let path = script(0.75, &[0.249, 0.0, 0.0, 0.5]);
+        let (vpls, ledger) = traced(&scene, |paths| paths, &path);
+        assert_eq!(vpls.iter().map(|vpl| vpl.power).collect::<Vec<_>>(), [0.5, 1.0]);
+        assert_eq!(vpls.iter().map(|vpl| vpl.bounce).collect::<Vec<_>>(), [1, 2]);
+        assert_eq!(vpls[1].incident, DVec3::Z);
+        assert_eq!((ledger.scattered, ledger.absorbed, ledger.emitted), (1.5, 2.5, CARRIED));
+        // The same path, cut behind its first vertex: where the rest would go is not known.
+        let (vpls, ledger) = traced(&scene, |paths| paths.with_max_vertices(1), &path[..9]);
+        assert_eq!((vpls.len(), ledger.truncated), (1, 1));
+    }
+
+    #[test]
+    fn the_ledger_of_a_path_that_always_survives_adds_up_per_channel() {
+        // The greatest channel is 1, so that roulette never ends it.
+        let [floor, ceiling] = [dvec3(1.0, 0.5, 0.25), dvec3(0.125, 1.0, 0.75)].map(diffuse);
+        let scene = vacuum(
+            vec![square(0.0, 5.0, floor, DVec3::ZERO), square(3.0, 5.0, ceiling, DVec3::ZERO)],
+            light(1.0),
+        );
+        // Floor, straight up to the ceiling, and out between the two.
+        let (vpls, ledger) =
+            traced(&scene, |paths| paths, &script(0.75, &[0.999, 0.0, 0.0, 0.999, 0.999, 0.3]));
+        assert_eq!(vpls[0].power, CARRIED * dvec3(1.0, 0.5, 0.25));
+        assert_eq!(vpls[1].power, CARRIED * dvec3(0.125, 0.5, 0.1875));
+        assert_eq!(ledger.escaped, vpls[1].power);
+        assert_eq!(ledger.absorbed + ledger.escaped, ledger.emitted);
+        assert_eq!(ledger.scattered, vpls[0].power + vpls[1].power);
+        let twice = ledger.and(&ledger);
+        assert_eq!(
+            (twice.paths, twice.emitted, twice.escaped),
+            (2, 2.0 * ledger.emitted, 2.0 * ledger.escaped)
+        );
+        assert_eq!(ledger.and(&Ledger::empty()), ledger);
+    }
+
+    #[test]
+    fn smooth_surfaces_are_passed_with_all_power() {
+        let ceiling = square(2.0, 9.0, diffuse(0.5), 0.0);
+        let scene = vacuum(vec![square(0.0, 5.0, Material::Mirror, 0.0), ceiling], light(1.0));
+        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.75, &[0.5]));
+        let [vpl] = vpls[..] else { panic!("{vpls:?}") };
+        assert!((vpl.vertex.position - dvec3(27f64.sqrt(), 0.0, 2.0)).length() < 1e-14);
+        assert_eq!((vpl.bounce, vpl.power, ledger.emitted), (1, 1.0, CARRIED));
+        // Refraction compresses radiance, not power.
+        let glass = Material::Dielectric { ior: 1.5 };
+        let scene =
+            vacuum(vec![square(0.0, 5.0, glass, 0.0), square(-2.0, 9.0, diffuse(0.5), 0.0)], light(1.0));
+        let (vpls, _) = traced(&scene, |paths| paths, &script(0.75, &[0.9, 0.5]));
+        assert_eq!((vpls[0].bounce, vpls[0].power), (1, 1.0));
+        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.75, &[0.001]));
+        assert_eq!((vpls.len(), ledger.escaped), (0, CARRIED));
+    }
+
+    #[test]
+    fn a_collision_leaves_what_is_scattered_there() {
+        let scene = hazy(vec![], light(0.0));
+        // Terminating: the particle that is scattered keeps its energy, and counts for those that were absorbed. Flight (2 ln 2),
+        // scattered, roulette that all survive, a direction, and a flight out.
+        let path = script(0.5, &[0.5, 0.49, 0.999, 0.3, 0.3, 0.9999]);
+        let (vpls, ledger) = traced(&scene, |paths| paths, &path);
+        assert!(vpls[0].is_in_medium() && vpls.len() == 1);
+        assert!((vpls[0].vertex.position - 2.0 * LN_2 * DVec3::X).length() < 1e-15);
+        assert!((vpls[0].incident - DVec3::X).length() < 1e-15);
+        assert_eq!((vpls[0].power, ledger.escaped, ledger.absorbed), (CARRIED, CARRIED, CARRIED));
+        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.5, &[0.5, 0.5]));
+        assert_eq!((vpls.len(), ledger.emitted, ledger.absorbed), (0, CARRIED, 0.0));
+        // Non-terminating: nothing is absorbed by chance, and the ledger of a path adds up.
+        let (vpls, ledger) = traced(
+            &scene,
+            |paths| LightPaths { walk: Walk::new(Version::NonTerminating, *walk().sampling()), ..paths },
+            &script(0.5, &[0.5, 0.7, 0.5]),
+        );
+        assert_eq!((vpls[0].power, ledger.absorbed), (0.5 * CARRIED, 0.5 * CARRIED));
+        let (vpls, ledger) = traced(
+            &scene,
+            |paths| LightPaths { walk: walk().with_max_collisions(0), ..paths },
+            &script(0.5, &[0.5]),
+        );
+        assert_eq!((vpls.len(), ledger.truncated), (0, 1));
+    }
+
+    #[test]
+    fn far_lights_are_thinned_and_weigh_more() {
+        let near = KeepNear { point: DVec3::ZERO, radius: 0.75f64.sqrt() };
+        let scene = vacuum(vec![square(0.0, 5.0, diffuse(0.25), 0.0)], light(1.0));
+        let traced = |u| traced(&scene, |paths| paths.keeping_near(Some(near)), &script(0.75, &[u, 0.9]));
+        let (kept, ledger) = traced(0.2499);
+        assert!((kept[0].power - 4.0 * 0.25 * CARRIED).abs() < 1e-14);
+        let (dropped, same) = traced(0.2501);
+        assert!(dropped.is_empty());
+        assert_eq!(ledger, same);
+    }
+
+    #[test]
+    fn no_light_leaves_nothing() {
+        let scene = vacuum(vec![square(0.0, 5.0, diffuse(0.5), 0.0)], vec![]);
+        let (vpls, ledger) = traced(&scene, |paths| paths, &[]);
+        assert!(vpls.is_empty());
+        assert_eq!(ledger, Ledger { paths: 1, ..Ledger::empty() });
+    }
+
+    #[test]
+    fn on_average_what_is_emitted_is_absorbed_or_escapes() {
+        let surfaces = vec![square(-1.0, 3.0, diffuse(0.7), 0.5), ball(DVec3::Z, 0.7, diffuse(0.4), 0.0)];
+        let scene = hazy(surfaces, light(0.0));
+        let emitters = emitters(&scene);
+        let paths = LightPaths::new(scene.world(), &emitters, walk());
+        let mut source = Seeded::new(5);
+        let missing: Vec<f64> = (0..20_000)
+            .map(|_| {
+                let mut ledger = Ledger::empty();
+                paths.trace(1.0, &mut ledger, &mut source, |_| {});
+                assert_eq!(ledger.truncated, 0);
+                ledger.emitted - ledger.absorbed - ledger.escaped
+            })
+            .collect();
+        let n = missing.len() as f64;
+        let mean = missing.iter().sum::<f64>() / n;
+        let variance = missing.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+        // Five standard errors: false alarm 6e-7.
+        assert!(variance > 0.0 && mean.abs() < 5.0 * (variance / n).sqrt(), "{mean}, variance {variance}");
+    }
 }

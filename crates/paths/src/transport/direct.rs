@@ -126,3 +126,153 @@ where
         radiance
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Lobe;
+    use super::super::fixtures::{Scene, ball, diffuse, hazy, square, vacuum};
+    use super::*;
+    use fairflight_media::EmptySpace;
+    use fairflight_scene::{EnvironmentMap, Source};
+    use fairflight_sources::Scripted;
+    use fairflight_transmittance::Regular;
+    use glam::dvec3;
+    use std::f64::consts::{FRAC_1_PI, PI};
+
+    const ALL: [Heuristic; 3] = [Heuristic::Balance, Heuristic::Power, Heuristic::Maximum];
+
+    /// At the origin, facing up.
+    fn on_floor() -> Vertex {
+        Vertex { position: DVec3::ZERO, lobe: Lobe::Diffuse { normal: DVec3::Z, surface: 0 } }
+    }
+
+    fn in_medium() -> Vertex {
+        Vertex { position: DVec3::ZERO, lobe: Lobe::Phase { incident: dvec3(0.6, 0.0, 0.8) } }
+    }
+
+    #[test]
+    fn point_and_parallel_light_by_hand() {
+        let sources = vec![
+            Source::point(dvec3(0.0, 3.0, 4.0), 100.0).unwrap(),
+            Source::directional(DVec3::NEG_Z, 2.0).unwrap(),
+        ];
+        let scene = hazy(0.1, vec![square(0.0, 9.0, diffuse(0.5), 0.0)], sources);
+        let lit = |vertex| {
+            scene.world().emitters_at(Heuristic::Balance, &vertex, &mut Regular, &mut Scripted::new([]))
+        };
+        // The haze reaches up to 10.
+        let (point, parallel) = (100.0 / (4.0 * PI * 25.0) * (-0.5f64).exp(), 2.0 * (-1.0f64).exp());
+        assert!((lit(on_floor()) - FRAC_1_PI * (0.8 * point + parallel)).abs() < 1e-15);
+        let phase = |direction: DVec3| scene.volume.phase.eval(dvec3(0.6, 0.0, 0.8).dot(direction));
+        // The floor goes through the point, but lies behind no light.
+        let expected = phase(dvec3(0.0, 0.6, 0.8)) * point + phase(DVec3::Z) * parallel;
+        assert!((lit(in_medium()) - expected).abs() < 1e-15);
+        let below =
+            Vertex { position: DVec3::ZERO, lobe: Lobe::Diffuse { normal: DVec3::NEG_Z, surface: 0 } };
+        assert_eq!(lit(below), 0.0);
+    }
+
+    #[test]
+    fn a_sphere_casts_a_shadow() {
+        let light = Source::point(dvec3(0.0, 0.0, 4.0), 100.0).unwrap();
+        let lit = |center| {
+            let scene = vacuum(
+                vec![square(0.0, 9.0, diffuse(0.5), 0.0), ball(center, 1.0, diffuse(0.5), 0.0)],
+                vec![light],
+            );
+            scene.world().emitters_at(Heuristic::Balance, &on_floor(), &mut Regular, &mut Scripted::new([]))
+        };
+        assert_eq!(lit(dvec3(0.5, 0.0, 2.0)), 0.0);
+        assert!((lit(dvec3(1.5, 0.0, 2.0)) - 100.0 / (64.0 * PI * PI)).abs() < 1e-15);
+        // Behind the light it is in nobody's way.
+        assert!(lit(dvec3(0.0, 0.0, 6.0)) > 0.0);
+    }
+
+    /// What both techniques find in one direction, each as its share of the whole emission.
+    fn shares(
+        scene: &Scene<EmptySpace>,
+        vertex: &Vertex,
+        heuristic: Heuristic,
+        script: &[f64],
+    ) -> (f64, f64) {
+        let world = scene.world();
+        let mut source = Scripted::new(script.iter().copied());
+        let sampled = world.emitters_at(heuristic, vertex, &mut Regular, &mut source);
+        assert_eq!(source.remaining(), 0);
+        let lamp = &scene.surfaces.surfaces()[1];
+        let towards = lamp.shape.sample_towards(vertex.position, script[0], script[1]).unwrap();
+        let scattered = vertex.pdf_solid_angle(&scene.volume.phase, towards.direction);
+        let from = Scattered { vertex: *vertex, pdf_solid_angle: scattered };
+        let hit = scene.surfaces.intersect(&vertex.leave(towards.direction, f64::INFINITY)).unwrap();
+        let met = world.emission(heuristic, Some(&from), towards.direction, &hit);
+        // A sample counts emission · scattered/density: without that quotient the weight is left.
+        (sampled * towards.pdf_solid_angle / scattered / lamp.emission, met / lamp.emission)
+    }
+
+    #[test]
+    fn the_weights_of_both_techniques_sum_to_one() {
+        let floor = square(0.0, 9.0, diffuse(0.5), 0.0);
+        let lamps = [square(2.0, 1.0, diffuse(0.0), 3.0), ball(dvec3(0.5, 0.0, 3.0), 1.0, diffuse(0.0), 3.0)];
+        for lamp in lamps {
+            let scene = vacuum(vec![floor, lamp], vec![]);
+            for vertex in [on_floor(), in_medium()] {
+                for heuristic in ALL {
+                    for script in [[0.75, 0.5], [0.1, 0.3], [0.6, 0.9]] {
+                        let (sampled, met) = shares(&scene, &vertex, heuristic, &script);
+                        assert!((sampled + met - 1.0).abs() < 1e-14, "{heuristic:?}: {sampled} + {met}");
+                        assert!(heuristic == Heuristic::Maximum || (sampled > 0.0 && met > 0.0));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_sample_of_a_lamp_by_hand() {
+        // Straight up to a lamp of the area 4 at the distance 2: density 4/(4 · 1) = 1 against 1/π.
+        let scene =
+            vacuum(vec![square(0.0, 9.0, diffuse(0.5), 0.0), square(2.0, 1.0, diffuse(0.0), 3.0)], vec![]);
+        let lit = |heuristic| {
+            scene.world().emitters_at(heuristic, &on_floor(), &mut Regular, &mut Scripted::new([0.5, 0.5]))
+        };
+        assert!((lit(Heuristic::Balance) - 3.0 * FRAC_1_PI / (1.0 + FRAC_1_PI)).abs() < 1e-15);
+        assert!((lit(Heuristic::Power) - 3.0 * FRAC_1_PI / (1.0 + FRAC_1_PI * FRAC_1_PI)).abs() < 1e-15);
+        assert!((lit(Heuristic::Maximum) - 3.0 * FRAC_1_PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_environment_map_is_shared_and_the_constant_is_not() {
+        let mut scene = vacuum(vec![square(0.0, 9.0, diffuse(0.5), 0.0)], vec![]);
+        let map = EnvironmentMap::new(2, 2, vec![1.0, 2.0, 0.5, 0.25]).unwrap();
+        scene.lights.background.maps.push(map);
+        scene.lights.background.constant = 0.5;
+        let map = &scene.lights.background.maps[0];
+        let (towards, arriving) = map.sample(0.1, 0.2, 0.3).unwrap();
+        assert!(towards.z > 0.0, "a script that looks up");
+        for heuristic in ALL {
+            let mut source = Scripted::new([0.1, 0.2, 0.3]);
+            let sampled = scene.world().emitters_at(heuristic, &on_floor(), &mut Regular, &mut source);
+            let (pdf, scattered) = (map.pdf_solid_angle(towards), towards.z * FRAC_1_PI);
+            let from = Scattered { vertex: on_floor(), pdf_solid_angle: scattered };
+            let met = scene.world().background(heuristic, Some(&from), towards);
+            let whole = scene.world().background(heuristic, None, towards);
+            assert!((whole - 0.5 - arriving).abs() < 1e-15);
+            assert!((sampled * pdf / scattered + met - whole).abs() < 1e-14, "{heuristic:?}");
+        }
+    }
+
+    #[test]
+    fn what_an_emitter_sees_of_itself_is_left_to_directions() {
+        let scene = vacuum(vec![ball(DVec3::ZERO, 2.0, diffuse(0.5), 3.0)], vec![]);
+        let normal = DVec3::X;
+        let vertex = Vertex { position: dvec3(-2.0, 0.0, 0.0), lobe: Lobe::Diffuse { normal, surface: 0 } };
+        let world = scene.world();
+        let lit = world.emitters_at(Heuristic::Balance, &vertex, &mut Regular, &mut Scripted::new([]));
+        assert_eq!(lit, 0.0);
+        let hit = scene.surfaces.intersect(&vertex.leave(normal, f64::INFINITY)).unwrap();
+        let from = Scattered { vertex, pdf_solid_angle: FRAC_1_PI };
+        for heuristic in ALL {
+            assert_eq!(world.emission(heuristic, Some(&from), normal, &hit), 3.0);
+        }
+    }
+}

@@ -5,6 +5,8 @@
 //! [`World::emission`], whose weights sum to one.
 
 mod direct;
+#[cfg(test)]
+pub(crate) mod fixtures;
 mod trace;
 mod vertex;
 mod world;

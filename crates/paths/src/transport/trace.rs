@@ -83,3 +83,93 @@ where
         Traced { radiance, is_cut: true }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{Scene, ball, diffuse, hazy, ray, square, vacuum};
+    use super::*;
+    use crate::Uniform;
+    use fairflight_collision::Version;
+    use fairflight_scene::{Material, Source};
+    use fairflight_sources::Scripted;
+    use fairflight_transmittance::Regular;
+    use glam::{DVec3, dvec3};
+    use std::f64::consts::{FRAC_1_PI, PI};
+
+    /// The path that these variates make, all of which it must use.
+    fn trace<M>(scene: &Scene<M>, segment: Segment, max_vertices: u32, script: &[f64]) -> Traced<f64>
+    where
+        M: fairflight_media::LineThickness,
+    {
+        let walk = Walk::new(Version::Terminating, Uniform::new(0.5).unwrap());
+        let mut source = Scripted::new(script.iter().copied());
+        let how = (Heuristic::Balance, max_vertices);
+        let traced = scene.world().trace(&walk, how, segment, &mut Regular, &mut source);
+        assert_eq!(source.remaining(), 0);
+        traced
+    }
+
+    fn up() -> Segment {
+        ray(DVec3::ZERO, DVec3::Z)
+    }
+
+    #[test]
+    fn a_lamp_seen_directly_counts_once() {
+        let lamp = || square(1.0, 1.0, diffuse(0.0), 3.0);
+        // It lights nothing that it sees: the one variate is that of roulette, which nothing survives.
+        let scene = vacuum(vec![lamp()], vec![]);
+        assert_eq!(trace(&scene, up(), 9, &[0.0]), Traced { radiance: 3.0, is_cut: false });
+        // In a mirror, where no other technique finds it.
+        let scene = vacuum(vec![lamp(), square(-1.0, 1.0, Material::Mirror, 0.0)], vec![]);
+        let down = ray(DVec3::ZERO, DVec3::NEG_Z);
+        assert_eq!(trace(&scene, down, 9, &[0.0]), Traced { radiance: 3.0, is_cut: false });
+        // Through a ball of glass, in at one side and out at the other: what n² takes away it gives back.
+        let scene =
+            vacuum(vec![lamp(), ball(DVec3::ZERO, 0.5, Material::Dielectric { ior: 1.5 }, 0.0)], vec![]);
+        let through = ray(dvec3(0.0, 0.0, -2.0), DVec3::Z);
+        let traced = trace(&scene, through, 9, &[0.5, 0.5, 0.0]);
+        assert!((traced.radiance - 3.0).abs() < 1e-15 && !traced.is_cut);
+    }
+
+    #[test]
+    fn the_background_is_seen_where_everything_is_left() {
+        let mut scene = vacuum(vec![square(1.0, 1.0, diffuse(0.5), 0.0)], vec![]);
+        scene.lights.background.constant = 0.25;
+        let down = ray(DVec3::ZERO, DVec3::NEG_Z);
+        assert_eq!(trace(&scene, down, 9, &[]), Traced { radiance: 0.25, is_cut: false });
+        // Scattered at the ceiling, back to the background: roulette keeps 0.5 as 1.
+        let traced = trace(&scene, up(), 9, &[0.49, 0.3, 0.7]);
+        assert_eq!(traced, Traced { radiance: 0.25, is_cut: false });
+        assert_eq!(trace(&scene, up(), 9, &[0.5]), Traced { radiance: 0.0, is_cut: false });
+    }
+
+    #[test]
+    fn two_techniques_meet_a_lamp_on_one_path() {
+        // From above on a floor of reflectance 1/2, which a lamp at the height 2 lights: density 1 of a point straight above.
+        let scene =
+            vacuum(vec![square(0.0, 9.0, diffuse(0.5), 0.0), square(2.0, 1.0, diffuse(0.0), 3.0)], vec![]);
+        let down = ray(DVec3::Z, DVec3::NEG_Z);
+        let lit = 0.5 * 3.0 * FRAC_1_PI / (1.0 + FRAC_1_PI);
+        // Lamp (u, v), roulette, straight up, roulette at the lamp.
+        let traced = trace(&scene, down, 9, &[0.5, 0.5, 0.49, 0.0, 0.0, 0.0]);
+        let met = 3.0 * FRAC_1_PI / (1.0 + FRAC_1_PI);
+        assert!((traced.radiance - lit - met).abs() < 1e-15 && !traced.is_cut);
+        // No more vertices than allowed: the lamp as a vertex is one, the floor another.
+        assert_eq!(trace(&scene, down, 2, &[0.5, 0.5, 0.49, 0.0, 0.0, 0.0]), traced);
+        let cut = trace(&scene, down, 1, &[0.5, 0.5, 0.49, 0.0, 0.0]);
+        assert!((cut.radiance - lit).abs() < 1e-15 && cut.is_cut);
+        assert_eq!(trace(&scene, down, 0, &[]), Traced { radiance: 0.0, is_cut: true });
+    }
+
+    #[test]
+    fn a_collision_is_lit_through_the_medium() {
+        let scene = hazy(0.5, vec![], vec![Source::point(dvec3(0.0, 3.0, 0.0), 10.0).unwrap()]);
+        // Half of what flies collides within 2 ln 2; the albedo is 1/2, decided by the second variate; roulette keeps all.
+        let start = ray(dvec3(0.0, 0.0, -2.0 * std::f64::consts::LN_2), DVec3::Z);
+        let traced = trace(&scene, start, 1, &[0.5, 0.2, 0.999, 0.1, 0.1]);
+        let irradiance = 10.0 / (36.0 * PI) * (-1.5f64).exp();
+        let phase = fairflight_media::PhaseFunction::eval(&scene.volume.phase, 0.0);
+        assert!((traced.radiance - irradiance * phase).abs() < 1e-15 && traced.is_cut);
+        assert_eq!(trace(&scene, start, 1, &[0.5, 0.7]), Traced { radiance: 0.0, is_cut: false });
+    }
+}

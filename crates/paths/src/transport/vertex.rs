@@ -88,3 +88,51 @@ impl Vertex {
         Segment { line: Line { origin: self.position, direction }, length, from: self.surface(), to: None }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::phase::HenyeyGreenstein;
+    use glam::dvec3;
+
+    fn forward() -> HenyeyGreenstein {
+        HenyeyGreenstein::new(0.6).unwrap()
+    }
+
+    #[test]
+    fn a_surface_scatters_evenly_and_into_its_half_space() {
+        let vertex = Vertex { position: DVec3::ONE, lobe: Lobe::Diffuse { normal: DVec3::Z, surface: 7 } };
+        let slanted = dvec3(0.6, 0.0, 0.8);
+        assert_eq!(vertex.surface(), Some(7));
+        assert_eq!(vertex.eval(&forward(), slanted), FRAC_1_PI);
+        assert_eq!(vertex.cosine(slanted), 0.8);
+        assert_eq!(vertex.cosine(-slanted), 0.0);
+        assert_eq!(vertex.pdf_solid_angle(&forward(), slanted), 0.8 * FRAC_1_PI);
+        assert_eq!(vertex.pdf_solid_angle(&forward(), -slanted), 0.0);
+        // The cosine of cosine_hemisphere is √(1 − u).
+        let direction = vertex.sample(&forward(), 0.36, 0.2);
+        assert!((direction.z - 0.8).abs() < 1e-15);
+        let leaving = vertex.leave(slanted, 3.0);
+        assert_eq!((leaving.line.origin, leaving.from, leaving.to), (DVec3::ONE, Some(7), None));
+        assert_eq!((leaving.line.direction, leaving.length), (slanted, 3.0));
+    }
+
+    #[test]
+    fn a_point_of_the_medium_scatters_by_the_angle_to_where_the_light_came_from() {
+        let incident = dvec3(0.0, 0.6, -0.8);
+        let vertex = Vertex { position: DVec3::ZERO, lobe: Lobe::Phase { incident } };
+        assert_eq!(vertex.surface(), None);
+        for direction in [DVec3::X, DVec3::Z, incident, -incident] {
+            let phase = forward().eval(incident.dot(direction));
+            assert_eq!(vertex.eval(&forward(), direction), phase);
+            assert_eq!(vertex.cosine(direction), 1.0);
+            assert_eq!(vertex.pdf_solid_angle(&forward(), direction), phase);
+        }
+        let sample = forward().sample(incident, 0.3, 0.9);
+        let direction = vertex.sample(&forward(), 0.3, 0.9);
+        assert_eq!(direction, sample.direction);
+        let density = vertex.pdf_solid_angle(&forward(), direction);
+        assert!((density / sample.pdf_solid_angle - 1.0).abs() < 1e-14);
+        assert_eq!(vertex.leave(DVec3::X, f64::INFINITY).from, None);
+    }
+}

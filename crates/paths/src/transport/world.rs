@@ -184,3 +184,150 @@ where
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{ALBEDO, Scene, ball, diffuse, hazy, ray, square, vacuum};
+    use super::*;
+    use crate::Uniform;
+    use fairflight_collision::Version;
+    use fairflight_media::EmptySpace;
+    use fairflight_scene::NoSurfaces;
+    use fairflight_sources::Scripted;
+    use fairflight_transmittance::Regular;
+    use glam::dvec3;
+
+    fn walk(sigma_samp: f64) -> Walk<Uniform> {
+        Walk::new(Version::Terminating, Uniform::new(sigma_samp).unwrap())
+    }
+
+    fn none() -> Scripted {
+        Scripted::new([])
+    }
+
+    #[test]
+    fn the_ball_holds_surfaces_and_the_medium_if_there_is_one() {
+        let floor = || vec![square(1.0, 3.0, diffuse(0.5), 0.0)];
+        let (center, radius) = vacuum(floor(), vec![]).world().enclosing_ball();
+        assert_eq!((center, radius), (DVec3::Z, 18f64.sqrt()));
+        let (center, radius) = hazy(1.0, floor(), vec![]).world().enclosing_ball();
+        assert_eq!((center, radius), (DVec3::ZERO, 300f64.sqrt()));
+        let alone = hazy(1.0, vec![], vec![]);
+        let world = World { volume: &alone.volume, surfaces: &NoSurfaces, lights: &alone.lights };
+        assert_eq!(world.enclosing_ball(), alone.volume.bounds.enclosing_ball());
+    }
+
+    #[test]
+    fn a_flight_scatters_ends_or_passes_as_the_variates_say() {
+        let scene = hazy(0.5, vec![], vec![]);
+        let (world, walk) = (scene.world(), walk(0.5));
+        let collisions = world.collisions(&walk);
+        let segment = Segment { length: 3.0, ..ray(DVec3::ZERO, dvec3(0.0, 0.6, 0.8)) };
+        let follow = |script: &[f64]| {
+            let mut source = Scripted::new(script.iter().copied());
+            let event = world.follow(&walk, &collisions, &segment, &mut source);
+            assert_eq!(source.remaining(), 0);
+            event
+        };
+        // −ln(1 − u)/σ = 2 ln 2 for u = 1/2, and 4 ln 2 < 3 < 6 ln 2 for the next; the albedo decides what happens there.
+        let Event::Scattered { vertex, energy } = follow(&[0.75, 0.49]) else { panic!() };
+        let expected = segment.line.at(4.0 * std::f64::consts::LN_2);
+        assert!((vertex.position - expected).length() < 1e-15);
+        assert_eq!(vertex.lobe, Lobe::Phase { incident: segment.line.direction });
+        assert_eq!(energy, 1.0);
+        assert_eq!(follow(&[0.75, ALBEDO]), Event::Absorbed);
+        assert_eq!(follow(&[0.875]), Event::Passed { weight: 1.0 });
+        let short = walk.with_max_collisions(0);
+        let cut = world.follow(&short, &collisions, &segment, &mut Scripted::new([0.75]));
+        assert_eq!(cut, Event::Truncated);
+    }
+
+    #[test]
+    fn nothing_is_drawn_where_there_is_no_medium() {
+        let (scene, walk) = (vacuum(vec![], vec![]), walk(0.5));
+        let world = scene.world();
+        let collisions = world.collisions(&walk);
+        let segment = ray(DVec3::ZERO, DVec3::Z);
+        assert_eq!(world.follow(&walk, &collisions, &segment, &mut none()), Event::Passed { weight: 1.0 });
+        assert_eq!(world.transmittance(&segment, &mut Regular, &mut none()), 1.0);
+        assert!(!world.meets_medium(&segment));
+        // Beside the bounds of a medium it is the same.
+        let scene = hazy(0.5, vec![], vec![]);
+        let beside = ray(dvec3(11.0, 0.0, 0.0), DVec3::Z);
+        let world = scene.world();
+        let collisions = world.collisions(&walk);
+        assert_eq!(world.follow(&walk, &collisions, &beside, &mut none()), Event::Passed { weight: 1.0 });
+        assert!(!world.meets_medium(&beside) && world.meets_medium(&segment));
+    }
+
+    #[test]
+    fn visibility_is_the_transmittance_or_nothing() {
+        let scene = hazy(0.5, vec![ball(DVec3::ZERO, 1.0, diffuse(0.5), 0.0)], vec![]);
+        let world = scene.world();
+        let beside = Segment { length: 4.0, ..ray(dvec3(1.5, 0.0, -2.0), DVec3::Z) };
+        let through = Segment { length: 4.0, ..ray(dvec3(0.5, 0.0, -2.0), DVec3::Z) };
+        let t = (-2.0f64).exp();
+        for (segment, visibility) in [(beside, t), (through, 0.0)] {
+            let found = world.attenuated_visibility(&segment, &mut Regular, &mut none());
+            assert!((found - visibility).abs() < 1e-16);
+            assert!((world.transmittance(&segment, &mut Regular, &mut none()) - t).abs() < 1e-16);
+        }
+        // Out of the bounds and on: 12 of 20 are hazy, where the last 8 are not.
+        let out = ray(dvec3(1.5, 0.0, -2.0), DVec3::Z);
+        let found = world.attenuated_visibility(&out, &mut Regular, &mut none());
+        assert!((found - (-6.0f64).exp()).abs() < 1e-17);
+    }
+
+    /// What a ray does where it meets a square in the plane z = 0.
+    fn pass(material: Material<f64>, origin: DVec3, direction: DVec3, u: &[f64]) -> Option<Passage> {
+        let scene: Scene<EmptySpace> = vacuum(vec![square(0.0, 9.0, material, 0.0)], vec![]);
+        let segment = ray(origin, direction);
+        let hit = scene.surfaces.intersect(&segment).unwrap();
+        let mut source = Scripted::new(u.iter().copied());
+        let passage = scene.world().pass(&hit, segment.line.direction, &mut source);
+        assert_eq!(source.remaining(), 0);
+        passage
+    }
+
+    #[test]
+    fn smooth_surfaces_reflect_and_refract() {
+        let slanted = dvec3(0.6, 0.0, -0.8);
+        assert_eq!(pass(diffuse(0.5), DVec3::Z, slanted, &[]), None);
+        let mirrored = pass(Material::Mirror, DVec3::Z, slanted, &[]).unwrap();
+        assert!((mirrored.direction - dvec3(0.6, 0.0, 0.8)).length() < 1e-15);
+        assert_eq!(mirrored.radiance_scale, 1.0);
+
+        let glass = Material::Dielectric { ior: 1.5 };
+        let reflected = fresnel_reflectance(0.8, 1.5);
+        let Passage { direction, radiance_scale } =
+            pass(glass, DVec3::Z, slanted, &[reflected - 1e-9]).unwrap();
+        assert!((direction - dvec3(0.6, 0.0, 0.8)).length() < 1e-15 && radiance_scale == 1.0);
+        // Into the glass Snell gives the sine 0.4, and radiance behind the surface is n² times as dense.
+        let inwards = pass(glass, DVec3::Z, slanted, &[reflected]).unwrap();
+        assert!((inwards.direction - dvec3(0.4, 0.0, -(0.84f64.sqrt()))).length() < 1e-15);
+        assert!((inwards.radiance_scale - 1.0 / 2.25).abs() < 1e-16);
+        // And back the way it came: both factors cancel.
+        let back = pass(glass, DVec3::NEG_Z, -inwards.direction, &[0.999]).unwrap();
+        assert!((back.direction + slanted).length() < 1e-14);
+        assert!((back.radiance_scale * inwards.radiance_scale - 1.0).abs() < 1e-15);
+        // Beyond the critical angle nothing is refracted, whatever is drawn.
+        let total = pass(glass, DVec3::NEG_Z, dvec3(0.8, 0.0, 0.6), &[0.999_999]).unwrap();
+        assert!((total.direction - dvec3(0.8, 0.0, -0.6)).length() < 1e-15 && total.radiance_scale == 1.0);
+    }
+
+    #[test]
+    fn a_diffuse_vertex_faces_where_the_path_came_from() {
+        let glass = Material::Dielectric { ior: 1.5 };
+        let scene = vacuum(vec![square(0.0, 9.0, diffuse(0.25), 0.0), square(-5.0, 9.0, glass, 0.0)], vec![]);
+        let hit_from = |z: f64| {
+            let segment = ray(dvec3(0.0, 0.0, z), DVec3::NEG_Z * z.signum());
+            scene.world().diffuse_vertex(&scene.surfaces.intersect(&segment).unwrap())
+        };
+        for (z, normal) in [(2.0, DVec3::Z), (-2.0, DVec3::NEG_Z)] {
+            let (vertex, reflectance) = hit_from(z).unwrap();
+            assert_eq!(vertex.lobe, Lobe::Diffuse { normal, surface: 0 });
+            assert_eq!((vertex.position, reflectance), (DVec3::ZERO, 0.25));
+        }
+        assert_eq!(hit_from(-9.0), None);
+    }
+}
