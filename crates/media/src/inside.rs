@@ -62,6 +62,15 @@ impl Bounds {
         }
     }
 
+    /// The corners of the box along the axes around the bounds: least and greatest coordinates \[length\].
+    #[must_use]
+    pub fn corners(&self) -> (DVec3, DVec3) {
+        match *self {
+            Self::Sphere { center, radius } => (center - radius, center + radius),
+            Self::Box { min, max } => (min, max),
+        }
+    }
+
     /// A ball that holds the bounds: its center and its radius \[length\].
     #[must_use]
     pub fn enclosing_ball(&self) -> (DVec3, f64) {

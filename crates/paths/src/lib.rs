@@ -9,6 +9,7 @@
 //! | [`single_scattering::SingleScattering`] | szirmay-kalos-2017 4.3 | one scattering event |
 //! | [`single_scattering::LineSampled`] | raab-2008 3.1, algorithm 2 | one scattering event |
 //! | [`single_scattering::Marching`] | perlin-1989 | one scattering event, a biased baseline |
+//! | [`PathTracer`] | raab-2008 4.1 | all orders, surfaces and medium |
 //!
 //! A walk looks the medium up at the rate of a [`SamplingExtinction`], which need not bound the extinction; whether it then has a
 //! second moment is what [`second_moment_growth`] measures.
@@ -34,19 +35,24 @@
 
 mod grid;
 mod growth;
+mod heuristic;
 mod integrator;
 mod particle_tracer;
+mod path_tracer;
 mod photon_tracer;
 mod sampling;
 mod shadow;
 pub mod single_scattering;
 mod splitting;
+pub mod transport;
 mod walk;
 
 pub use grid::{Grid, GridError};
 pub use growth::{Criticality, Growth, grows_nowhere, second_moment_growth};
+pub use heuristic::Heuristic;
 pub use integrator::Integrator;
 pub use particle_tracer::{Attenuation, ParticleTracer};
+pub use path_tracer::PathTracer;
 pub use photon_tracer::PhotonTracer;
 pub use sampling::{NotPositive, SamplingExtinction, Uniform};
 pub use shadow::{Ratio, RayTransmittance, arriving};

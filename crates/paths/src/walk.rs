@@ -63,6 +63,27 @@ pub struct ScatteringEvent<C> {
     pub energy: C,
 }
 
+/// How a flight along one ray ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Leg {
+    /// It was scattered.
+    Scattered {
+        /// The distance from the start of the ray \[length\].
+        s: f64,
+        /// The energy behind the collision, by the greatest albedo.
+        weight: f64,
+    },
+    /// It met the end of the ray.
+    Passed {
+        /// The energy left.
+        weight: f64,
+    },
+    /// It was absorbed, or lost at roulette.
+    Absorbed,
+    /// It met as many collisions as it was allowed.
+    Truncated,
+}
+
 impl<R: SamplingExtinction> Walk<R> {
     /// Walks with the collisions of `version`, at the rate of `sampling`.
     pub fn new(version: Version, sampling: R) -> Self {
@@ -80,6 +101,11 @@ impl<R: SamplingExtinction> Walk<R> {
         &self.sampling
     }
 
+    /// The greatest number of collisions of a walk.
+    pub fn max_collisions(&self) -> u64 {
+        self.max_collisions
+    }
+
     /// The version.
     pub fn version(&self) -> Version {
         self.version
@@ -93,6 +119,49 @@ impl<R: SamplingExtinction> Walk<R> {
             Albedo::new(greatest.min(1.0)).expect("an albedo is checked to be a number of at least 0");
         let ratio = if albedo.get() > 0.0 { volume.albedo * (1.0 / albedo.get()) } else { C::ZERO };
         (SingleParticle { version: self.version, albedo }, ratio)
+    }
+
+    /// Flies along one ray: to the first scattering, or to the end of the ray.
+    ///
+    /// `weight` is the energy that the particle starts with, `left` the number of collisions that it may still meet. `model` is that
+    /// of [`collisions`](Self::collisions).
+    #[inline]
+    pub(crate) fn fly<M: Medium, S: UniformSource + ?Sized>(
+        &self,
+        model: &SingleParticle,
+        ray: &Ray<&M>,
+        mut weight: f64,
+        left: &mut u64,
+        source: &mut S,
+    ) -> Leg {
+        let length = ray.length();
+        let mut s = 0.0;
+        loop {
+            let depth = source.next_exponential();
+            let Some((next, sigma_samp)) = self.sampling.fly(ray.world_line(), s, length, depth) else {
+                return Leg::Passed { weight };
+            };
+            if *left == 0 {
+                return Leg::Truncated;
+            }
+            *left -= 1;
+            s = next;
+            let (energy, scatters) = match model.collide(ray.sigma_t(s) / sigma_samp, source) {
+                Outcome::Transmitted(energy) => (energy, false),
+                Outcome::Scattered(energy) => (energy, true),
+                Outcome::Absorbed => return Leg::Absorbed,
+            };
+            weight *= energy;
+            if weight.abs() < ROULETTE_BELOW {
+                if source.next_uniform() * ROULETTE_BELOW >= weight.abs() {
+                    return Leg::Absorbed;
+                }
+                weight = ROULETTE_BELOW.copysign(weight);
+            }
+            if scatters {
+                return Leg::Scattered { s, weight };
+            }
+        }
     }
 
     /// Follows a particle of energy 1 from the start of `ray`. `scattered` sees each scattering event.
@@ -114,35 +183,17 @@ impl<R: SamplingExtinction> Walk<R> {
         let (mut weight, mut colour) = (1.0_f64, C::splat(1.0));
         let mut left = self.max_collisions;
         loop {
-            let length = ray.length();
-            let mut s = 0.0;
-            // Flights along one direction.
-            loop {
-                let depth = source.next_exponential();
-                let Some((next, sigma_samp)) = self.sampling.fly(ray.world_line(), s, length, depth) else {
+            let s = match self.fly(&model, &ray, weight, &mut left, source) {
+                Leg::Scattered { s, weight: energy } => {
+                    weight = energy;
+                    s
+                }
+                Leg::Passed { weight } => {
                     return End::Escaped { direction: ray.world_line().direction, energy: colour * weight };
-                };
-                if left == 0 {
-                    return End::Truncated;
                 }
-                left -= 1;
-                s = next;
-                let (energy, scatters) = match model.collide(ray.sigma_t(s) / sigma_samp, source) {
-                    Outcome::Transmitted(energy) => (energy, false),
-                    Outcome::Scattered(energy) => (energy, true),
-                    Outcome::Absorbed => return End::Absorbed,
-                };
-                weight *= energy;
-                if weight.abs() < ROULETTE_BELOW {
-                    if source.next_uniform() * ROULETTE_BELOW >= weight.abs() {
-                        return End::Absorbed;
-                    }
-                    weight = ROULETTE_BELOW.copysign(weight);
-                }
-                if scatters {
-                    break;
-                }
-            }
+                Leg::Absorbed => return End::Absorbed,
+                Leg::Truncated => return End::Truncated,
+            };
             let Line { direction: incident, .. } = *ray.world_line();
             let point = ray.world_point(s);
             colour = colour * ratio;

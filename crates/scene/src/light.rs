@@ -109,6 +109,23 @@ impl<C: Spectrum> Lights<C> {
         usize::from(self.background.constant != C::ZERO) + self.background.maps.len() + self.sources.len()
     }
 
+    /// The power of the light `index` < [`emitters`](Self::emitters) that may reach a ball of this radius.
+    #[must_use]
+    pub fn power(&self, index: usize, radius: f64) -> C {
+        let disc = PI * radius * radius;
+        let constant = usize::from(self.background.constant != C::ZERO);
+        if index < constant {
+            return self.background.constant * (4.0 * PI * disc);
+        }
+        if let Some(map) = self.background.maps.get(index - constant) {
+            return C::splat(map.flux() * disc);
+        }
+        match self.sources[index - constant - self.background.maps.len()] {
+            Source::Point { power, .. } => power,
+            Source::Directional { irradiance, .. } => irradiance * disc,
+        }
+    }
+
     /// A photon of the light `index` < [`emitters`](Self::emitters) that may reach the ball (`center`, `radius`).
     ///
     /// Infinitely far light starts on the disc that covers the ball across its direction. `None` for a black light.

@@ -27,8 +27,15 @@ pub trait Spectrum:
     /// One channel.
     fn channel(self, index: usize) -> f64;
 
+    /// A function of each channel.
+    #[must_use]
+    fn map(self, function: impl Fn(f64) -> f64) -> Self;
+
     /// The greatest channel.
     fn max_channel(self) -> f64;
+
+    /// The greatest absolute value of a channel.
+    fn magnitude(self) -> f64;
 
     /// The mean of the channels: what one number says of a colour.
     fn mean(self) -> f64;
@@ -56,8 +63,16 @@ impl Spectrum for f64 {
         self
     }
     #[inline]
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        function(self)
+    }
+    #[inline]
     fn max_channel(self) -> f64 {
         self
+    }
+    #[inline]
+    fn magnitude(self) -> f64 {
+        self.abs()
     }
     #[inline]
     fn mean(self) -> f64 {
@@ -88,8 +103,16 @@ impl Spectrum for DVec3 {
         self[index]
     }
     #[inline]
+    fn map(self, function: impl Fn(f64) -> f64) -> Self {
+        Self::new(function(self.x), function(self.y), function(self.z))
+    }
+    #[inline]
     fn max_channel(self) -> f64 {
         self.max_element()
+    }
+    #[inline]
+    fn magnitude(self) -> f64 {
+        self.abs().max_element()
     }
     #[inline]
     fn mean(self) -> f64 {

@@ -1,6 +1,7 @@
 //! An integrator of any kind, instantiated over the medium that it meets.
 
 use super::single_scattering::SingleScatteringPlan;
+use super::transport::{AmongSurfaces, PathTracerPlan, Stage, VplPlan};
 use super::{AnyMedium, RayEstimator, SpaceSampling, Unlawful, WalkPlan};
 use crate::Failure;
 use crate::spec::{EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SingleScatteringSpec};
@@ -34,6 +35,10 @@ pub enum IntegratorPlan {
     },
     /// One scattering event per light.
     SingleScattering(SingleScatteringPlan),
+    /// Paths from the camera, among surfaces.
+    PathTracer(PathTracerPlan),
+    /// Virtual point lights, among surfaces.
+    Vpl(Box<VplPlan>),
 }
 
 /// An integrator, and what it has to say at the end of a tile.
@@ -41,6 +46,11 @@ pub trait TileIntegrator<C>: Integrator<C> {
     /// The number of walks that were cut: each is a bias.
     fn truncated(&self) -> u64 {
         0
+    }
+
+    /// How many compensation vertices were tried, and how many of them counted.
+    fn compensation_vertices(&self) -> (u64, u64) {
+        (0, 0)
     }
 }
 
@@ -98,6 +108,12 @@ impl IntegratorPlan {
             IntegratorSpec::SingleScattering(spec) => {
                 SingleScatteringPlan::build(spec).map(Self::SingleScattering)
             }
+            IntegratorSpec::PathTracer(spec) => {
+                PathTracerPlan::build(spec, medium, bounds).map(Self::PathTracer)
+            }
+            IntegratorSpec::Vpl(spec) => {
+                VplPlan::build(spec, medium, bounds).map(|plan| Self::Vpl(Box::new(plan)))
+            }
         }
     }
 
@@ -108,6 +124,8 @@ impl IntegratorPlan {
             Self::ParticleTracer(walk) | Self::PhotonTracer(walk) | Self::LineSplitting { walk, .. } => {
                 Some(walk)
             }
+            Self::PathTracer(plan) => Some(&plan.transport.walk),
+            Self::Vpl(plan) => Some(&plan.transport.walk),
             Self::Transmittance(_) | Self::RegularTransmittance | Self::SingleScattering(_) => None,
         }
     }
@@ -121,7 +139,9 @@ impl IntegratorPlan {
             | Self::ParticleTracer(_)
             | Self::PhotonTracer(_)
             | Self::LineSplitting { .. }
-            | Self::SingleScattering(_) => false,
+            | Self::SingleScattering(_)
+            | Self::PathTracer(_) => false,
+            Self::Vpl(_) => true,
         }
     }
 
@@ -133,7 +153,7 @@ impl IntegratorPlan {
     pub fn by_look_ups<'s, M, P, C, J>(
         &'s self,
         volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
+        stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
     ) -> Result<J::Output, Failure>
@@ -144,8 +164,10 @@ impl IntegratorPlan {
         J: IntegratorJob<C>,
     {
         match self {
-            Self::SingleScattering(plan) => plan.by_look_ups(volume, lights, unlawful, job),
-            _ => self.on_any_medium(volume, lights, unlawful, job),
+            Self::SingleScattering(plan) => plan.by_look_ups(volume, stage.lights, unlawful, job),
+            Self::PathTracer(plan) => plan.by_look_ups(volume, stage, unlawful, job),
+            Self::Vpl(plan) => plan.by_look_ups(volume, stage, unlawful, job),
+            _ => self.on_any_medium(volume, stage.lights, unlawful, job),
         }
     }
 
@@ -156,7 +178,7 @@ impl IntegratorPlan {
     pub fn by_closed_form<'s, M, P, C, J>(
         &'s self,
         volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
+        stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
     ) -> Result<J::Output, Failure>
@@ -167,9 +189,11 @@ impl IntegratorPlan {
         J: IntegratorJob<C>,
     {
         match self {
-            Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, lights, Regular))),
-            Self::SingleScattering(plan) => plan.by_closed_form(volume, lights, unlawful, job),
-            _ => self.on_any_medium(volume, lights, unlawful, job),
+            Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, stage.lights, Regular))),
+            Self::SingleScattering(plan) => plan.by_closed_form(volume, stage.lights, unlawful, job),
+            Self::PathTracer(plan) => Ok(plan.by_closed_form(volume, stage, unlawful, job)),
+            Self::Vpl(plan) => Ok(plan.by_closed_form(volume, stage, unlawful, job)),
+            _ => self.on_any_medium(volume, stage.lights, unlawful, job),
         }
     }
 
@@ -199,7 +223,7 @@ impl IntegratorPlan {
                 let asked = (*line, *starts, *majorant);
                 Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
             }
-            Self::RegularTransmittance | Self::SingleScattering(_) => {
+            Self::RegularTransmittance | Self::SingleScattering(_) | Self::PathTracer(_) | Self::Vpl(_) => {
                 Err(needs_closed_form("estimator.kind: regular"))
             }
         }
@@ -217,6 +241,8 @@ impl IntegratorPlan {
                 walk.admits((lowest, highest), albedo)
             }
             Self::SingleScattering(plan) => plan.admits((lowest, highest)),
+            Self::PathTracer(plan) => plan.transport.walk.admits((lowest, highest), albedo),
+            Self::Vpl(plan) => plan.transport.walk.admits((lowest, highest), albedo),
             Self::Transmittance(_) | Self::RegularTransmittance => Ok(()),
         }
     }
@@ -245,6 +271,8 @@ impl IntegratorSpec {
             Self::SingleScattering(SingleScatteringSpec { estimator, shadow, .. }) => {
                 is_biased(estimator) || shadow.as_ref().is_some_and(is_biased)
             }
+            Self::PathTracer(spec) => spec.transport.estimator.as_ref().is_some_and(is_biased),
+            Self::Vpl(spec) => return spec.biased_by_design(is_biased),
             Self::ParticleTracer(_) | Self::LineSplitting { .. } => false,
         };
         biased.then_some("ray_marching is a biased baseline")

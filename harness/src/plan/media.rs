@@ -54,6 +54,34 @@ impl AnyMedium {
     }
 }
 
+impl AnyMedium {
+    /// The greatest extinction that the medium declares, positive also where there is none; `key` is what needs it.
+    ///
+    /// # Errors
+    /// If it declares none.
+    pub(super) fn greatest_extinction(&self, key: &str) -> Result<f64, Failure> {
+        let bound = self.with(UpperBound).ok_or_else(|| {
+            Failure::refused(format!(
+                "{key}: this key is missing, and the medium declares no majorant that could stand for it"
+            ))
+        })?;
+        // Walks through nothing need a rate all the same; at this one they never collide.
+        Ok(bound.max(f64::MIN_POSITIVE))
+    }
+}
+
+struct UpperBound;
+
+impl MediumJob for UpperBound {
+    type Output = Option<f64>;
+    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Option<f64> {
+        medium.upper_bound()
+    }
+    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Option<f64> {
+        medium.upper_bound()
+    }
+}
+
 /// The media that were built so far: the points of a sweep share a file and its voxels.
 #[derive(Debug, Default)]
 pub struct MediumLibrary {

@@ -14,8 +14,10 @@ mod profile;
 mod ray_estimator;
 mod sampling;
 mod scene;
+mod shadow;
 mod single_scattering;
 mod surfaces;
+mod transport;
 mod voxel_lattice;
 mod walk;
 
@@ -30,6 +32,7 @@ pub use ray_estimator::{RayEstimator, RayWorker, Unlawful};
 pub use sampling::AnySampling;
 pub use scene::{Radiant, ScenePlan, Spectra};
 pub use single_scattering::SingleScatteringPlan;
+pub use transport::{PathTracerPlan, Stage, TransportPlan, VplPlan};
 pub use voxel_lattice::VoxelLattice;
 pub use walk::{SpaceSampling, WalkPlan};
 

@@ -1,7 +1,8 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
 use super::integrator::{admits_majorant, needs_closed_form};
-use super::{IntegratorJob, RayEstimator, RayWorker, TileIntegrator, Unlawful};
+use super::shadow::Shadow;
+use super::{IntegratorJob, TileIntegrator, Unlawful};
 use crate::Failure;
 use crate::spec::{
     ControlSpec, EstimatorSpec, RayEstimatorSpec, SamplingSpec, SingleScatteringSpec, Strategy,
@@ -41,13 +42,6 @@ enum PrimaryPlan {
     Marching { steps: u32, offset: Offset, shadow: RayMarching },
 }
 
-/// Transmittance of shadow rays.
-#[derive(Debug)]
-enum Shadow {
-    Regular,
-    Sampled(RayEstimator),
-}
-
 /// Explorers of the scattering-driven technique where the estimator has none: a look-up each per ray.
 const EXPLORERS: usize = 16;
 
@@ -66,10 +60,7 @@ impl SingleScatteringPlan {
             sampling: sampling(spec.sampling, spec.heuristic),
             samples: spec.samples_per_ray,
             primary: PrimaryPlan::build(spec, count.is_some())?,
-            shadow: match shadow {
-                RayEstimatorSpec::Regular => Shadow::Regular,
-                RayEstimatorSpec::Sampled(estimator) => Shadow::Sampled(RayEstimator::build(estimator, key)?),
-            },
+            shadow: Shadow::build(shadow, key)?,
             explorers: count.unwrap_or(EXPLORERS),
             shared: spec.shared_explorers,
         })
@@ -112,10 +103,11 @@ impl SingleScatteringPlan {
         C: Spectrum,
         J: IntegratorJob<C>,
     {
-        let Shadow::Sampled(shadow) = &self.shadow else {
-            return Err(needs_closed_form("shadow (or estimator): regular"));
-        };
-        self.tracked(volume, lights, shadow.worker(unlawful), job)
+        let shadow = self
+            .shadow
+            .by_look_ups(unlawful)
+            .ok_or_else(|| needs_closed_form("shadow (or estimator): regular"))?;
+        self.tracked(volume, lights, shadow, job)
     }
 
     pub(super) fn by_closed_form<'s, M, P, C, J>(
@@ -131,10 +123,7 @@ impl SingleScatteringPlan {
         C: Spectrum,
         J: IntegratorJob<C>,
     {
-        let shadow = match &self.shadow {
-            Shadow::Regular => ShadowWorker::Regular(Regular),
-            Shadow::Sampled(shadow) => ShadowWorker::Sampled(shadow.worker(unlawful)),
-        };
+        let shadow = self.shadow.by_closed_form(unlawful);
         match self.primary {
             PrimaryPlan::Regular => self.with(volume, lights, Regular, shadow, job),
             _ => self.tracked(volume, lights, shadow, job),
@@ -350,23 +339,6 @@ impl<M: Medium> Primary<M> for AnyTracked {
         match self {
             Self::Double(walk) => Primary::<M>::fitted(walk),
             Self::Single(walk) => Primary::<M>::fitted(walk),
-        }
-    }
-}
-
-/// Shadow rays where a closed form exists: one branch per ray.
-#[derive(Debug)]
-enum ShadowWorker<'a> {
-    Regular(Regular),
-    Sampled(RayWorker<'a>),
-}
-
-impl<M: LineThickness> RayTransmittance<M> for ShadowWorker<'_> {
-    #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
-        match self {
-            Self::Regular(regular) => RayTransmittance::estimate(regular, ray, source),
-            Self::Sampled(worker) => worker.estimate(ray, source),
         }
     }
 }

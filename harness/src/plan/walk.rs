@@ -50,6 +50,10 @@ impl WalkPlan {
         let refuse =
             |error: &dyn std::fmt::Display| Failure::refused(format!("integrator.sigma_samp: {error}"));
         let sampling = match spec.sampling {
+            SamplingFieldSpec::FromMedium => {
+                let greatest = medium.greatest_extinction("integrator.sigma_samp")?;
+                Field::Uniform(Uniform::new(greatest).map_err(|error| refuse(&error))?)
+            }
             SamplingFieldSpec::Uniform(value) => {
                 Field::Uniform(Uniform::new(value).map_err(|error| refuse(&error))?)
             }

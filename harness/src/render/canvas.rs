@@ -55,6 +55,14 @@ pub(super) struct Spent {
     pub cpu_seconds: f64,
     /// Walks that were cut at their greatest number of collisions.
     pub truncated: u64,
+    /// Virtual point lights, of all passes.
+    pub vpls: u64,
+    /// CPU seconds of their light paths, a part of all.
+    pub light_path_seconds: f64,
+    /// Compensation vertices that were tried.
+    pub compensation_tried: u64,
+    /// Those that lay where something was lost.
+    pub compensation_inside: u64,
 }
 
 impl<C: Spectrum> Canvas<C> {
@@ -123,6 +131,10 @@ impl Spent {
             lookups: self.lookups + other.lookups,
             cpu_seconds: self.cpu_seconds + other.cpu_seconds,
             truncated: self.truncated + other.truncated,
+            vpls: self.vpls + other.vpls,
+            light_path_seconds: self.light_path_seconds + other.light_path_seconds,
+            compensation_tried: self.compensation_tried + other.compensation_tried,
+            compensation_inside: self.compensation_inside + other.compensation_inside,
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use super::canvas::{Canvas, Spent};
 use super::tile::{AddSamples, Tile};
+use super::virtual_lights::Batch;
 use crate::Failure;
 use crate::plan::{
-    AnyPhase, IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, TileIntegrator, Unlawful,
+    AnyPhase, IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, Stage, TileIntegrator, Unlawful,
 };
 use cpu_time::ThreadTime;
 use fairflight_media::{LineThickness, Medium, Observed};
-use fairflight_scene::{Lights, Spectrum, Volume};
+use fairflight_scene::{Spectrum, Volume};
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -34,9 +35,9 @@ pub(super) struct AddPass<'a, C> {
 
 /// How the integrator of a tile comes about, in one pass over a medium.
 ///
-/// An integrator whose pixels share what is prepared for a pass (light paths, say) has an implementation of its own with a batch,
-/// is chosen in [`AddPass`], and says so in [`IntegratorPlan::draws_in_batches`]: its passes then are of one sample per pixel, and
-/// the variance of the image's mean comes from the means of the passes.
+/// An integrator whose pixels share what is prepared for a pass (virtual point lights, say) says so in
+/// [`IntegratorPlan::draws_in_batches`]: its passes then are of one sample per pixel, and the variance of the image's mean comes from
+/// the means of the passes.
 pub(super) trait Pass<M: Medium, C: Spectrum>: Sync {
     /// What all tiles of a pass share.
     type Batch: Sync;
@@ -60,45 +61,64 @@ pub(super) trait Pass<M: Medium, C: Spectrum>: Sync {
     ) -> Result<J::Output, Failure>;
 }
 
-/// Integrators that need nothing but look-ups, and share nothing.
-struct ByLookUps<'a, C>(&'a IntegratorPlan, &'a Lights<C>);
+/// Integrators that need nothing but look-ups.
+struct ByLookUps<'a, C>(&'a IntegratorPlan, &'a Radiant<C>);
 
 /// The same on a medium whose optical thickness has a closed form.
-struct ByClosedForm<'a, C>(&'a IntegratorPlan, &'a Lights<C>);
+struct ByClosedForm<'a, C>(&'a IntegratorPlan, &'a Radiant<C>);
 
-impl<M: Medium, C: Spectrum> Pass<M, C> for ByLookUps<'_, C> {
-    type Batch = ();
-
-    fn prepare(&self, _draw: &Draw<'_, C>, _medium: &M, _pass: usize) -> Result<((), Spent), Failure> {
-        Ok(((), Spent::default()))
-    }
-
-    fn integrate<'s, J: IntegratorJob<C>>(
-        &'s self,
-        (): &'s (),
-        volume: &'s ObservedVolume<'_, M, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        self.0.by_look_ups(volume, self.1, unlawful, job)
+/// What is prepared for a pass of any integrator.
+fn prepare<M: Medium + Sync, C: Spectrum>(
+    draw: &Draw<'_, C>,
+    medium: &M,
+    pass: usize,
+) -> Result<(Batch<C>, Spent), Failure> {
+    match &draw.plan.integrator {
+        IntegratorPlan::Vpl(plan) => draw.virtual_lights(medium, plan, pass),
+        _ => Ok((Batch::none(), Spent::default())),
     }
 }
 
-impl<M: LineThickness, C: Spectrum> Pass<M, C> for ByClosedForm<'_, C> {
-    type Batch = ();
+impl<C> Batch<C> {
+    fn stage<'s>(&'s self, radiant: &'s Radiant<C>) -> Stage<'s, C> {
+        let Radiant { lights, surfaces, .. } = radiant;
+        Stage { lights, surfaces, vpls: &self.vpls, bound: self.bound }
+    }
+}
 
-    fn prepare(&self, _draw: &Draw<'_, C>, _medium: &M, _pass: usize) -> Result<((), Spent), Failure> {
-        Ok(((), Spent::default()))
+impl<M: Medium + Sync, C: Spectrum> Pass<M, C> for ByLookUps<'_, C> {
+    type Batch = Batch<C>;
+
+    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
+        prepare(draw, medium, pass)
     }
 
     fn integrate<'s, J: IntegratorJob<C>>(
         &'s self,
-        (): &'s (),
+        batch: &'s Batch<C>,
         volume: &'s ObservedVolume<'_, M, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
     ) -> Result<J::Output, Failure> {
-        self.0.by_closed_form(volume, self.1, unlawful, job)
+        self.0.by_look_ups(volume, batch.stage(self.1), unlawful, job)
+    }
+}
+
+impl<M: LineThickness + Sync, C: Spectrum> Pass<M, C> for ByClosedForm<'_, C> {
+    type Batch = Batch<C>;
+
+    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
+        prepare(draw, medium, pass)
+    }
+
+    fn integrate<'s, J: IntegratorJob<C>>(
+        &'s self,
+        batch: &'s Batch<C>,
+        volume: &'s ObservedVolume<'_, M, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure> {
+        self.0.by_closed_form(volume, batch.stage(self.1), unlawful, job)
     }
 }
 
@@ -106,12 +126,12 @@ impl<C: Spectrum> MediumJob for AddPass<'_, C> {
     type Output = Result<(), Failure>;
 
     fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output {
-        let pass = ByLookUps(&self.draw.plan.integrator, &self.draw.radiant.lights);
+        let pass = ByLookUps(&self.draw.plan.integrator, self.draw.radiant);
         self.add(medium, &pass)
     }
 
     fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
-        let pass = ByClosedForm(&self.draw.plan.integrator, &self.draw.radiant.lights);
+        let pass = ByClosedForm(&self.draw.plan.integrator, self.draw.radiant);
         self.add(medium, &pass)
     }
 }
@@ -221,7 +241,16 @@ impl<C: Spectrum> Draw<'_, C> {
         }
         let added = added?;
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        Ok((added.sum, Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated: added.truncated }))
+        let (compensation_tried, compensation_inside) = added.compensation;
+        let spent = Spent {
+            lookups: volume.medium.lookups(),
+            cpu_seconds,
+            truncated: added.truncated,
+            compensation_tried,
+            compensation_inside,
+            ..Spent::default()
+        };
+        Ok((added.sum, spent))
     }
 
     /// All tiles; what comes of them in their order.

@@ -13,6 +13,7 @@ mod photons;
 mod pixel;
 mod statistics;
 mod tile;
+mod virtual_lights;
 mod warnings;
 
 use crate::cli::RenderArguments;

@@ -3,7 +3,7 @@
 use super::canvas::{Drawn, MeanVariance, Spent};
 use super::pixel::Pixel;
 use crate::image::Image;
-use crate::plan::ScenePlan;
+use crate::plan::{IntegratorPlan, ScenePlan};
 use crate::result::{Provenance, number};
 use fairflight_scene::Spectrum;
 use serde::Serialize;
@@ -17,6 +17,8 @@ pub(super) struct Statistics {
     pub reference: Option<ReferenceError>,
     pub cost: Cost,
     pub efficiency: Efficiency,
+    /// Null for an integrator without any.
+    pub virtual_point_lights: Option<VirtualLights>,
     /// How mean squared error and efficiency are meant.
     pub method: String,
     pub warnings: Vec<String>,
@@ -65,6 +67,21 @@ pub(super) struct Cost {
     pub seconds: f64,
     /// Over all threads.
     pub cpu_seconds: f64,
+}
+
+/// Virtual point lights, and what compensates for bounding them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct VirtualLights {
+    /// One for each sample per pixel.
+    pub sets: u32,
+    pub lights_per_set: f64,
+    /// CPU seconds of light paths, a part of all.
+    pub light_path_seconds: f64,
+    /// That were tried.
+    pub compensation_vertices: u64,
+    /// Of those, the share that lay where something was lost; null if none was tried.
+    #[serde(serialize_with = "number")]
+    pub compensation_share_inside: Option<f64>,
 }
 
 /// 1/(MSE · cost), null at zero error.
@@ -192,6 +209,13 @@ impl Moments {
             squared_error.filter(|error| *error > 0.0 && cost > 0.0).map(|error| 1.0 / (error * cost))
         };
         let Spent { lookups, cpu_seconds, .. } = self.cost;
+        let virtual_lights = || VirtualLights {
+            sets: self.samples,
+            lights_per_set: self.cost.vpls as f64 / samples,
+            light_path_seconds: self.cost.light_path_seconds,
+            compensation_vertices: self.cost.compensation_tried,
+            compensation_share_inside: self.compensation_share(),
+        };
         Statistics {
             image: Size { width, height, samples_per_pixel: self.samples, channels: self.channels },
             radiance: Radiance {
@@ -211,10 +235,27 @@ impl Moments {
                 per_second: efficiency(seconds),
                 per_lookup: efficiency(lookups as f64),
             },
+            virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
             method: format!("{method}; seconds by the clock on the wall; look-ups are counted while it runs"),
             warnings,
             provenance,
         }
+    }
+
+    /// The share of compensation vertices that lay where something was lost; `None` if none was tried.
+    pub(crate) fn compensation_share(&self) -> Option<f64> {
+        let Spent { compensation_tried, compensation_inside, .. } = self.cost;
+        (compensation_tried > 0).then(|| compensation_inside as f64 / compensation_tried as f64)
+    }
+
+    /// CPU seconds of light paths, a part of all.
+    pub(crate) fn light_path_seconds(&self) -> f64 {
+        self.cost.light_path_seconds
+    }
+
+    /// Virtual point lights per set.
+    pub(crate) fn lights_per_set(&self) -> f64 {
+        self.cost.vpls as f64 / f64::from(self.samples)
     }
 
     /// Samples per pixel.

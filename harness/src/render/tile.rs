@@ -96,6 +96,8 @@ pub(super) struct Added {
     pub sum: f64,
     /// Walks that were cut.
     pub truncated: u64,
+    /// Compensation vertices that were tried, and those that counted.
+    pub compensation: (u64, u64),
 }
 
 impl<C: Spectrum> IntegratorJob<C> for AddSamples<'_, C> {
@@ -124,7 +126,8 @@ impl<C: Spectrum> IntegratorJob<C> for AddSamples<'_, C> {
             }
             (*kept, *stream) = (pixel, source);
         }
-        Ok(Added { sum, truncated: integrator.truncated() })
+        let (truncated, compensation) = (integrator.truncated(), integrator.compensation_vertices());
+        Ok(Added { sum, truncated, compensation })
     }
 }
 

@@ -17,7 +17,7 @@ pub use medium::{MediumKind, MediumSpec};
 pub use node::{Node, Object};
 pub use profile::ProfileSpec;
 pub use scene::{
-    Collisions, ColourSpec, IntegratorSpec, LightSpec, MaterialSpec, Particles, PhaseSpec, RayEstimatorSpec,
-    SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec, SingleScatteringSpec, Strategy, SurfaceSpec,
-    TracerSpec, VolumeSpec, WalkSpec,
+    ClampSpec, Collisions, ColourSpec, ComponentSpec, IntegratorSpec, LightSpec, MaterialSpec, Particles,
+    PathTracerSpec, PhaseSpec, RayEstimatorSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec,
+    SingleScatteringSpec, Strategy, SurfaceSpec, TracerSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };

@@ -57,6 +57,12 @@ impl<'a> Node<'a> {
         self.value.is_object()
     }
 
+    /// Whether this value is null.
+    #[must_use]
+    pub fn is_null(&self) -> bool {
+        self.value.is_null()
+    }
+
     /// Whether this value is a list.
     #[must_use]
     pub fn is_list(&self) -> bool {

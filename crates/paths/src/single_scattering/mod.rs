@@ -7,12 +7,13 @@ mod scattering_driven;
 mod source_driven;
 mod technique;
 
+pub use crate::Heuristic;
 pub use line::LineSampled;
 pub use marching::Marching;
 pub use primary::{Primary, SharedExplorers, Tracked};
 pub use scattering_driven::ScatteringDriven;
 pub use source_driven::SourceDriven;
-pub use technique::{Heuristic, Sampling, Technique};
+pub use technique::{Sampling, Technique};
 
 use crate::{Integrator, RayTransmittance};
 use fairflight_media::{Extinction, Line, Medium, PhaseFunction, Ray};

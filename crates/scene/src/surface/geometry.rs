@@ -57,6 +57,12 @@ pub trait Geometry<C: Spectrum> {
     /// The nearest surface on a segment; its end counts for nothing but its length.
     fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>>;
 
+    /// The surfaces that come within `radius` of a point, one bit each; all from the 64th on share one.
+    fn reaching(&self, center: DVec3, radius: f64) -> u64;
+
+    /// The nearest of some surfaces, which [`reaching`](Self::reaching) names.
+    fn intersect_among(&self, segment: &Segment, among: u64) -> Option<Hit<'_, C>>;
+
     /// Whether any surface lies between the ends of a segment. A specular surface is in the way, too.
     fn is_occluded(&self, segment: &Segment) -> bool;
 
@@ -87,6 +93,14 @@ impl<C: Spectrum> Geometry<C> for NoSurfaces {
     }
     #[inline]
     fn intersect(&self, _segment: &Segment) -> Option<Hit<'_, C>> {
+        None
+    }
+    #[inline]
+    fn reaching(&self, _center: DVec3, _radius: f64) -> u64 {
+        0
+    }
+    #[inline]
+    fn intersect_among(&self, _segment: &Segment, _among: u64) -> Option<Hit<'_, C>> {
         None
     }
     #[inline]

@@ -114,6 +114,13 @@ impl Shape {
         }
     }
 
+    /// Whether it has an inside.
+    #[inline]
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        matches!(self, Self::Sphere(_))
+    }
+
     /// Whether a point lies inside; nothing lies inside a rectangle.
     #[must_use]
     pub fn encloses(&self, point: DVec3) -> bool {

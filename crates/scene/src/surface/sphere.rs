@@ -35,17 +35,14 @@ impl Sphere {
         let distance = if leaves {
             2.0 * along
         } else {
-            // The point of the line nearest to the center, seen from there. For an origin far away the first projection is rounded
-            // at the size of that distance; the second one removes what is left along the line at the size of the sphere.
-            let offset = along * line.direction - to_center;
-            let rest = offset.dot(line.direction);
-            let closest = (offset - rest * line.direction).length();
+            // How near the line comes to the center, from the vector itself: rounded at the size of a far origin's distance, as the ray
+            // is, and not at that of its square, as a discriminant would be.
+            let closest = (along * line.direction - to_center).length();
             if closest >= self.radius {
                 return None;
             }
             // A product does not cancel as the difference of two squares does.
             let half = ((self.radius - closest) * (self.radius + closest)).sqrt();
-            let along = along - rest;
             if along > half { along - half } else { along + half }
         };
         (distance > 0.0 && distance < length).then_some(distance)
@@ -137,6 +134,12 @@ mod tests {
                 let rounding = 4e-16 * 2.0 / half + 4e-16 * 10.0 * far;
                 assert!((found - (10.0 * far - half)).abs() <= rounding, "{far} {h}");
             }
+        }
+        // Across the axis near the rim, where all numbers are exact, half the chord is right to the last digits.
+        for h in [2f64.powi(-20), 2f64.powi(-40), 2f64.powi(-50)] {
+            let ray = Line { origin: dvec3(2.0 - h, 0.0, 5.0), direction: DVec3::Z };
+            let found = ball().intersect(&ray, f64::INFINITY, false).unwrap();
+            assert!((found / (h * (4.0 - h)).sqrt() - 1.0).abs() < 4e-16, "{h}");
         }
         let mut next = Variates::new(21);
         for _ in 0..20_000 {

@@ -2,6 +2,7 @@
 
 use super::{Geometry, Hit, Segment, Surface};
 use crate::Spectrum;
+use glam::DVec3;
 
 /// A handful of surfaces, tried one by one.
 ///
@@ -24,6 +25,37 @@ impl<C: Spectrum> Surfaces<C> {
     }
 }
 
+impl<C: Spectrum> Surfaces<C> {
+    /// The nearest of the surfaces whose index is wanted.
+    #[inline]
+    fn nearest(&self, segment: &Segment, wanted: impl Fn(usize) -> bool) -> Option<Hit<'_, C>> {
+        let mut length = segment.length;
+        let mut nearest = None;
+        for (index, surface) in self.all.iter().enumerate() {
+            if !wanted(index) {
+                continue;
+            }
+            let leaves = segment.from == Some(index);
+            if let Some(distance) = surface.shape.intersect(&segment.line, length, leaves) {
+                length = distance;
+                nearest = Some(index);
+            }
+        }
+        let index = nearest?;
+        let surface = &self.all[index];
+        let position = segment.line.at(length);
+        let outer = surface.shape.normal(position);
+        let outside = segment.line.direction.dot(outer) < 0.0;
+        let normal = if outside { outer } else { -outer };
+        Some(Hit { distance: length, position, normal, outside, index, surface })
+    }
+}
+
+/// The bit of a surface.
+fn bit(index: usize) -> u64 {
+    1 << index.min(63)
+}
+
 impl<C: Spectrum> Geometry<C> for Surfaces<C> {
     const IS_EMPTY: bool = false;
 
@@ -38,22 +70,15 @@ impl<C: Spectrum> Geometry<C> for Surfaces<C> {
     }
     #[inline]
     fn intersect(&self, segment: &Segment) -> Option<Hit<'_, C>> {
-        let mut length = segment.length;
-        let mut nearest = None;
-        for (index, surface) in self.all.iter().enumerate() {
-            let leaves = segment.from == Some(index);
-            if let Some(distance) = surface.shape.intersect(&segment.line, length, leaves) {
-                length = distance;
-                nearest = Some(index);
-            }
-        }
-        let index = nearest?;
-        let surface = &self.all[index];
-        let position = segment.line.at(length);
-        let outer = surface.shape.normal(position);
-        let outside = segment.line.direction.dot(outer) < 0.0;
-        let normal = if outside { outer } else { -outer };
-        Some(Hit { distance: length, position, normal, outside, index, surface })
+        self.nearest(segment, |_| true)
+    }
+    fn reaching(&self, center: DVec3, radius: f64) -> u64 {
+        let near = self.all.iter().enumerate().filter(|(_, surface)| surface.shape.reaches(center, radius));
+        near.fold(0, |bits, (index, _)| bits | bit(index))
+    }
+    #[inline]
+    fn intersect_among(&self, segment: &Segment, among: u64) -> Option<Hit<'_, C>> {
+        self.nearest(segment, |index| among & bit(index) != 0)
     }
     #[inline]
     fn is_occluded(&self, segment: &Segment) -> bool {
@@ -76,7 +101,7 @@ mod tests {
     use crate::surface::{Material, NoSurfaces, Rectangle, Shape, Sphere};
     use crate::variates::Variates;
     use fairflight_media::Line;
-    use glam::{DQuat, DVec3, dvec3};
+    use glam::{DQuat, dvec3};
 
     const GRAY: Material<f64> = Material::Diffuse { reflectance: 0.5 };
 
@@ -197,6 +222,30 @@ mod tests {
         let crossings = [(1, 2.0, true), (1, 4.0, false), (2, 5.0, true), (2, 7.0, false)];
         assert_eq!(seen, [&crossings[..], &[(0, 8.0, true), (0, 10.0, false)]].concat());
         assert!(scene.intersect(&Segment { line, length: 2.0, from: None, to: None }).is_none());
+    }
+
+    #[test]
+    fn among_those_that_reach_a_ball_the_nearest_in_it_is_found() {
+        // More than have a bit of their own, in a row.
+        let balls: Vec<_> =
+            (0..80).map(|i| Shape::Sphere(Sphere::new(f64::from(i) * DVec3::X, 0.25).unwrap())).collect();
+        let scene = surfaces(&balls);
+        assert_eq!(scene.reaching(dvec3(2.5, 0.0, 0.0), 0.3), 0b1100);
+        assert_eq!(scene.reaching(dvec3(0.0, 5.0, 0.0), 4.0), 0);
+        assert_eq!(scene.reaching(dvec3(70.0, 0.0, 0.0), 0.5), 1 << 63);
+        let mut next = Variates::new(43);
+        let mut met = 0;
+        for _ in 0..20_000 {
+            let origin = dvec3(80.0 * next.draw(), next.draw(), 0.0);
+            let direction = dvec3(next.draw() - 0.5, -next.draw(), 0.0).normalize();
+            let radius = 2.0 * next.draw();
+            let segment = Segment { line: Line { origin, direction }, length: radius, from: None, to: None };
+            let among = scene.reaching(origin, radius);
+            let found = scene.intersect_among(&segment, among);
+            assert_eq!(found, scene.intersect(&segment));
+            met += usize::from(found.is_some());
+        }
+        assert!(met > 2000, "{met}");
     }
 
     #[test]

@@ -1,12 +1,11 @@
 //! What estimates a pixel.
 
-use super::RayEstimatorSpec;
+use super::{PathTracerSpec, RayEstimatorSpec, VplSpec};
 use crate::Failure;
 use crate::spec::estimator::{one_of, read_version};
 use crate::spec::{Node, Object};
 use fairflight_collision::Version;
-use fairflight_paths::Grid;
-use fairflight_paths::single_scattering::Heuristic;
+use fairflight_paths::{Grid, Heuristic};
 use fairflight_transmittance::Starts;
 
 /// An integrator with its parameters.
@@ -32,6 +31,10 @@ pub enum IntegratorSpec {
     },
     /// szirmay-kalos-2017 section 4.3.
     SingleScattering(SingleScatteringSpec),
+    /// raab-2008 section 4.1, among surfaces.
+    PathTracer(PathTracerSpec),
+    /// raab-2008 section 4.2, engelhardt-2013.
+    Vpl(Box<VplSpec>),
 }
 
 /// Single scattering with its parameters.
@@ -82,6 +85,8 @@ pub struct WalkSpec {
 pub enum SamplingFieldSpec {
     /// The same everywhere.
     Uniform(f64),
+    /// The greatest extinction that the medium declares.
+    FromMedium,
     /// One value per cell of a grid over the bounds of the medium, fitted to it.
     Grid {
         /// Cells along x, y and z.
@@ -154,6 +159,8 @@ impl IntegratorSpec {
         match self {
             Self::ParticleTracer(tracer) => Some(&tracer.walk),
             Self::LineSplitting { walk, .. } => Some(walk),
+            Self::PathTracer(spec) => Some(&spec.transport.walk),
+            Self::Vpl(spec) => Some(&spec.transport.walk),
             Self::Transmittance { .. } | Self::SingleScattering(_) => None,
         }
     }
@@ -166,6 +173,7 @@ impl IntegratorSpec {
             Self::ParticleTracer(_) => Some("particle_tracer"),
             Self::LineSplitting { .. } => Some("line_splitting"),
             Self::SingleScattering(_) => Some("single_scattering"),
+            Self::PathTracer(_) | Self::Vpl(_) => None,
         }
     }
 
@@ -180,6 +188,8 @@ impl IntegratorSpec {
         let integrator = match kind.text()? {
             "transmittance" => Self::Transmittance { estimator: estimator()? },
             "particle_tracer" => Self::ParticleTracer(TracerSpec::take_from(&object)?),
+            "path_tracer" => Self::PathTracer(PathTracerSpec::take_from(&object)?),
+            "vpl" => Self::Vpl(Box::new(VplSpec::take_from(&object)?)),
             "line_splitting" => Self::LineSplitting {
                 walk: WalkSpec::take_from(&object)?,
                 majorant: object.required("majorant")?.non_negative()?,
@@ -202,8 +212,9 @@ impl IntegratorSpec {
                     .map_or(Ok(1), |node| node.integer(1, MOST))? as u32,
             }),
             _ => {
-                return Err(kind
-                    .refuse("must be transmittance, particle_tracer, line_splitting or single_scattering"));
+                return Err(kind.refuse(
+                    "must be transmittance, particle_tracer, line_splitting, single_scattering, path_tracer or vpl",
+                ));
             }
         };
         object.finish()?;
@@ -220,16 +231,35 @@ impl TracerSpec {
 
 impl WalkSpec {
     fn take_from(object: &Object<'_>) -> Result<Self, Failure> {
+        let version = read_version(&object.required("version")?)?;
+        Self::take_rest(object, version, SamplingFieldSpec::read(&object.required("sigma_samp")?)?)
+    }
+
+    fn take_rest(
+        object: &Object<'_>,
+        version: Version,
+        sampling: SamplingFieldSpec,
+    ) -> Result<Self, Failure> {
         let colours = [("shared", Collisions::Shared), ("separate", Collisions::Separate)];
         let most = object.optional("max_collisions");
         let allow = object.optional("allow_supercritical");
         Ok(Self {
-            version: read_version(&object.required("version")?)?,
-            sampling: SamplingFieldSpec::read(&object.required("sigma_samp")?)?,
+            version,
+            sampling,
             colour: named_or(object, "colour", &colours)?,
             max_collisions: most.map_or(Ok(u64::MAX), |node| node.integer(1, u64::MAX))?,
             allow_supercritical: allow.map_or(Ok(false), |node| node.boolean())?,
         })
+    }
+}
+
+impl WalkSpec {
+    /// The walk of an integrator that knows surfaces, the same where version and sampling extinction may be left out: non-terminating, at the greatest extinction of the medium.
+    pub(super) fn take_with_defaults(object: &Object<'_>) -> Result<Self, Failure> {
+        let version = object.optional("version").map(|node| read_version(&node));
+        let sampling = object.optional("sigma_samp").map(|node| SamplingFieldSpec::read(&node));
+        let version = version.unwrap_or(Ok(Version::NonTerminating))?;
+        Self::take_rest(object, version, sampling.unwrap_or(Ok(SamplingFieldSpec::FromMedium))?)
     }
 }
 
@@ -261,7 +291,7 @@ fn read_starts(object: &Object<'_>) -> Result<Starts, Failure> {
 }
 
 /// One of some names.
-fn named<T: Copy>(node: &Node<'_>, names: &[(&str, T)]) -> Result<T, Failure> {
+pub(super) fn named<T: Copy>(node: &Node<'_>, names: &[(&str, T)]) -> Result<T, Failure> {
     let text = node.text()?;
     names.iter().find(|(name, _)| *name == text).map(|&(_, value)| value).ok_or_else(|| {
         let names: Vec<&str> = names.iter().map(|&(name, _)| name).collect();
@@ -270,6 +300,10 @@ fn named<T: Copy>(node: &Node<'_>, names: &[(&str, T)]) -> Result<T, Failure> {
 }
 
 /// One of some names, the first where the key is absent.
-fn named_or<T: Copy>(object: &Object<'_>, key: &'static str, names: &[(&str, T)]) -> Result<T, Failure> {
+pub(super) fn named_or<T: Copy>(
+    object: &Object<'_>,
+    key: &'static str,
+    names: &[(&str, T)],
+) -> Result<T, Failure> {
     object.optional(key).map_or(Ok(names[0].1), |node| named(&node, names))
 }

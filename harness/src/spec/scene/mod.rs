@@ -6,6 +6,7 @@ mod integrator;
 mod light;
 mod ray_estimator;
 mod surface;
+mod virtual_lights;
 mod volume;
 
 pub use colour::ColourSpec;
@@ -16,6 +17,7 @@ pub use integrator::{
 pub use light::LightSpec;
 pub use ray_estimator::RayEstimatorSpec;
 pub use surface::{MaterialSpec, ShapeSpec, SurfaceSpec};
+pub use virtual_lights::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 pub use volume::{PhaseSpec, VolumeSpec};
 
 use super::Node;

@@ -1,0 +1,109 @@
+//! What a correction does, as values.
+
+/// How compensation vertices go with virtual point lights (engelhardt-2013 section 4.3, fig. 6).
+///
+/// With s_k(y) = connection(y, k) + w(x)·(D(x)/M + s_k(x)) the light at y is D(y) + Σ_k s_k(y): every strategy is a way to sum this, where
+/// D is the light of emitters, M the number of virtual point lights, x a compensation vertex and w its weight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strategy {
+    /// 1-to-N: one compensation vertex per point, connected with all lights; it counts D(x) once (raab-2008 section 4.2).
+    OneToMany,
+    /// N-to-1: as many compensation vertices per point as there are lights, each connected with its own; each counts D(x)/M.
+    ManyToOne,
+    /// 1-to-1: each point on the eye ray has one light, which counts M times, and one compensation vertex connected with the same
+    /// light.
+    OneToOne,
+}
+
+/// How far away compensation vertices are placed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placement {
+    /// By a free flight, which may end beyond the bounding region and is then lost (raab-2008 section 4.2).
+    FreeFlight,
+    /// Within the bounding region, as if the medium were homogeneous there (engelhardt-2013 eq. 4 and 5).
+    LocallyHomogeneous,
+}
+
+/// The transmittance between a point and its compensation vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TransmittanceUse {
+    /// Estimated without bias.
+    Exact,
+    /// exp(−σ̄_t · distance): biased by design where the medium is not homogeneous.
+    Approximate,
+}
+
+/// Whether surfaces are seen between a point and its compensation vertex (engelhardt-2013 section 4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// All of them.
+    Full,
+    /// Those that come within the bounding region of the point, found once per point: what lies further away cannot matter, and nothing
+    /// is lost.
+    Local,
+    /// None: vertices lie in the medium only, and may lie behind a surface. Biased by design near surfaces.
+    Ignored,
+}
+
+/// All choices of a correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CompensationOptions {
+    /// How vertices and lights go together.
+    pub strategy: Strategy,
+    /// How far away vertices are.
+    pub placement: Placement,
+    /// The transmittance to them.
+    pub transmittance: TransmittanceUse,
+    /// The greatest number of vertices behind each other; `None`: until the recursion ends by itself. A limit is a bias by design.
+    pub steps: Option<u32>,
+    /// What blocks the way to them.
+    pub visibility: Visibility,
+}
+
+/// Choices that contradict each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OptionsError {
+    /// A free flight has met the transmittance that there is.
+    #[error(
+        "transmittance: approximate needs placement: locally_homogeneous, a free flight knows no other transmittance"
+    )]
+    ApproximateFreeFlight,
+}
+
+impl CompensationOptions {
+    /// raab-2008 section 4.2 as it stands.
+    pub const EXACT: Self = Self {
+        strategy: Strategy::OneToMany,
+        placement: Placement::FreeFlight,
+        transmittance: TransmittanceUse::Exact,
+        steps: None,
+        visibility: Visibility::Full,
+    };
+
+    /// The same choices, if they go together.
+    ///
+    /// # Errors
+    /// If they do not.
+    pub fn checked(self) -> Result<Self, OptionsError> {
+        match (self.placement, self.transmittance) {
+            (Placement::FreeFlight, TransmittanceUse::Approximate) => {
+                Err(OptionsError::ApproximateFreeFlight)
+            }
+            _ => Ok(self),
+        }
+    }
+
+    /// What is biased by design, if anything is.
+    #[must_use]
+    pub fn biased_by_design(&self) -> Option<&'static str> {
+        if self.steps.is_some() {
+            Some("a limited number of compensation steps loses energy")
+        } else if self.transmittance == TransmittanceUse::Approximate {
+            Some("an approximate transmittance is that of another medium")
+        } else if self.visibility == Visibility::Ignored {
+            Some("ignored visibility gathers behind surfaces, and misses what they reflect")
+        } else {
+            None
+        }
+    }
+}

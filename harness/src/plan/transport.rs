@@ -1,0 +1,369 @@
+//! Integrators that know surfaces: the path tracer, and virtual point lights.
+
+use super::integrator::needs_closed_form;
+use super::shadow::Shadow;
+use super::{
+    AnyMedium, AnyPhase, IntegratorJob, MediumJob, Radiant, SpaceSampling, TileIntegrator, Unlawful, WalkPlan,
+};
+use crate::Failure;
+use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
+use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
+use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
+use fairflight_paths::transport::{Vertex, World};
+use fairflight_paths::{Heuristic, Integrator, PathTracer, RayTransmittance, SamplingExtinction};
+use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces, Volume};
+use fairflight_sources::UniformSource;
+use fairflight_vpl::{
+    Component, Connected, Correction, Gather, Pairing, Term, Uncorrected, Vpl, VplIntegrator,
+};
+use std::cell::Cell;
+
+/// What an integrator meets beside the medium.
+#[derive(Debug)]
+pub struct Stage<'s, C> {
+    /// What shines, but for surfaces.
+    pub lights: &'s Lights<C>,
+    /// What stands in the way, and may shine.
+    pub surfaces: &'s Surfaces<C>,
+    /// Virtual point lights, for an integrator that gathers from them.
+    pub vpls: &'s [Vpl<C>],
+    /// The bound of their geometric term.
+    pub bound: f64,
+}
+
+impl<C> Clone for Stage<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<C> Copy for Stage<'_, C> {}
+
+/// How paths travel, with its parameters checked.
+#[derive(Debug)]
+pub struct TransportPlan {
+    /// Flights.
+    pub walk: WalkPlan,
+    shadow: Shadow,
+    heuristic: Heuristic,
+}
+
+/// A path tracer whose parameters are checked.
+#[derive(Debug)]
+pub struct PathTracerPlan {
+    /// How it travels.
+    pub transport: TransportPlan,
+    max_vertices: u32,
+}
+
+/// Virtual point lights whose parameters are checked.
+#[derive(Debug)]
+pub struct VplPlan {
+    /// How light paths and eye rays travel.
+    pub transport: TransportPlan,
+    /// Light paths per set.
+    pub light_paths: u32,
+    /// Within this distance from the camera all virtual point lights are kept.
+    pub keep_near: Option<f64>,
+    /// The bound of the geometric term as given.
+    pub clamp: ClampSpec,
+    eye_samples: u32,
+    compensation: Option<CompensationOptions>,
+    mean: LocalMean,
+    component: ComponentSpec,
+}
+
+/// Look-ups along each edge of a cell for its mean.
+const PROBES: u32 = 4;
+
+impl TransportPlan {
+    fn build(spec: &TransportSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+        const KEY: &str = "integrator.estimator";
+        Ok(Self {
+            walk: WalkPlan::build(&spec.walk, medium, bounds)?,
+            shadow: match &spec.estimator {
+                Some(estimator) => Shadow::build(estimator, KEY)?,
+                None => Shadow::default_for(medium, KEY)?,
+            },
+            heuristic: spec.heuristic,
+        })
+    }
+}
+
+impl PathTracerPlan {
+    pub(super) fn build(spec: &PathTracerSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+        let transport = TransportPlan::build(&spec.transport, medium, bounds)?;
+        Ok(Self { transport, max_vertices: spec.max_vertices })
+    }
+}
+
+impl VplPlan {
+    pub(super) fn build(spec: &VplSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+        // Nothing is looked up where nothing is placed by it.
+        let cells = if spec.compensation.is_some() { spec.local_mean_cells } else { 1 };
+        Ok(Self {
+            transport: TransportPlan::build(&spec.transport, medium, bounds)?,
+            light_paths: spec.light_paths,
+            eye_samples: spec.eye_samples,
+            clamp: spec.clamp,
+            compensation: spec.compensation,
+            mean: medium.with(Mean { bounds, cells }),
+            keep_near: spec.keep_near,
+            component: spec.component,
+        })
+    }
+}
+
+impl VplPlan {
+    /// The bound of the geometric term in a scene whose emitters have this power together \[1/length²\].
+    ///
+    /// # Errors
+    /// If it is to come from the scene, and nothing there has a radiance.
+    pub fn bound<C: Spectrum>(
+        &self,
+        radiant: &Radiant<C>,
+        phase: &AnyPhase,
+        power: f64,
+    ) -> Result<f64, Failure> {
+        match self.clamp {
+            ClampSpec::Unclamped => return Ok(f64::INFINITY),
+            ClampSpec::Bound(bound) => return Ok(bound),
+            ClampSpec::Scene => {}
+        }
+        let surfaces = Geometry::surfaces(&radiant.surfaces);
+        let emitted = surfaces.iter().map(|surface| surface.emission.max_channel()).fold(0.0, f64::max);
+        let radiance = emitted.max(radiant.lights.background.greatest());
+        if power > 0.0 && radiance == 0.0 {
+            return Err(Failure::refused(
+                "integrator.clamp: scene needs a light with a radiance, but there are only lights of points and directions; \
+                 allowed are a number and null",
+            ));
+        }
+        let reflectance = |surface: &Surface<C>| match surface.material {
+            Material::Diffuse { reflectance } => reflectance.max_channel(),
+            Material::Mirror | Material::Dielectric { .. } => 0.0,
+        };
+        let brightness = Brightness {
+            radiance,
+            power,
+            paths: u64::from(self.light_paths),
+            reflectance: surfaces.iter().map(reflectance).fold(0.0, f64::max),
+            scattering: radiant.albedo.max_channel() * phase.greatest(),
+        };
+        // Without light any bound will do.
+        Ok(if power > 0.0 { brightness.bound() } else { f64::INFINITY })
+    }
+}
+
+struct Mean<'a> {
+    bounds: &'a Bounds,
+    cells: u32,
+}
+
+impl MediumJob for Mean<'_> {
+    type Output = LocalMean;
+    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> LocalMean {
+        LocalMean::of(medium, self.bounds, [self.cells; 3], PROBES)
+    }
+    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> LocalMean {
+        self.by_look_ups(medium)
+    }
+}
+
+/// A kind of integrator among surfaces, instantiated for a scene with or without them.
+pub(super) trait AmongSurfaces {
+    /// How it travels.
+    fn transport(&self) -> &TransportPlan;
+
+    /// Does a job with the integrator.
+    fn run<'s, G, M, P, C, T, J>(
+        &'s self,
+        world: World<'s, G, M, P, C>,
+        stage: Stage<'s, C>,
+        shadow: T,
+        job: J,
+    ) -> J::Output
+    where
+        G: Geometry<C>,
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        T: RayTransmittance<M>,
+        J: IntegratorJob<C>;
+
+    fn by_look_ups<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        stage: Stage<'s, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        let shadow = self.transport().shadow.by_look_ups(unlawful);
+        let shadow = shadow.ok_or_else(|| needs_closed_form("estimator.kind: regular"))?;
+        Ok(self.with(volume, stage, shadow, job))
+    }
+
+    fn by_closed_form<'s, M, P, C, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        stage: Stage<'s, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> J::Output
+    where
+        M: LineThickness,
+        P: PhaseFunction,
+        C: Spectrum,
+        J: IntegratorJob<C>,
+    {
+        self.with(volume, stage, self.transport().shadow.by_closed_form(unlawful), job)
+    }
+
+    fn with<'s, M, P, C, T, J>(
+        &'s self,
+        volume: &'s Volume<M, P, C>,
+        stage: Stage<'s, C>,
+        shadow: T,
+        job: J,
+    ) -> J::Output
+    where
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        T: RayTransmittance<M>,
+        J: IntegratorJob<C>,
+    {
+        let Stage { lights, surfaces, .. } = stage;
+        if Geometry::surfaces(surfaces).is_empty() {
+            self.run(World { volume, surfaces: &NoSurfaces, lights }, stage, shadow, job)
+        } else {
+            self.run(World { volume, surfaces, lights }, stage, shadow, job)
+        }
+    }
+}
+
+impl AmongSurfaces for PathTracerPlan {
+    fn transport(&self) -> &TransportPlan {
+        &self.transport
+    }
+    fn run<'s, G, M, P, C, T, J>(
+        &'s self,
+        world: World<'s, G, M, P, C>,
+        _stage: Stage<'s, C>,
+        shadow: T,
+        job: J,
+    ) -> J::Output
+    where
+        G: Geometry<C>,
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        T: RayTransmittance<M>,
+        J: IntegratorJob<C>,
+    {
+        let TransportPlan { walk, heuristic, .. } = &self.transport;
+        let tracer = PathTracer::new(world, walk.walk(), shadow, *heuristic);
+        job.run(tracer.with_max_vertices(self.max_vertices))
+    }
+}
+
+impl AmongSurfaces for VplPlan {
+    fn transport(&self) -> &TransportPlan {
+        &self.transport
+    }
+    fn run<'s, G, M, P, C, T, J>(
+        &'s self,
+        world: World<'s, G, M, P, C>,
+        stage: Stage<'s, C>,
+        shadow: T,
+        job: J,
+    ) -> J::Output
+    where
+        G: Geometry<C>,
+        M: Medium,
+        P: PhaseFunction,
+        C: Spectrum,
+        T: RayTransmittance<M>,
+        J: IntegratorJob<C>,
+    {
+        let TransportPlan { walk, heuristic, .. } = &self.transport;
+        let (component, term) = match self.component {
+            ComponentSpec::All => (Component::All, Term::Bounded(stage.bound)),
+            ComponentSpec::Connections => (Component::Connections, Term::Bounded(stage.bound)),
+            ComponentSpec::Correction => (Component::Correction, Term::Bounded(stage.bound)),
+            ComponentSpec::Lost => (Component::Connections, Term::Excess(stage.bound)),
+        };
+        let gather =
+            Gather { world, vpls: stage.vpls, term, heuristic: *heuristic, walk: walk.walk(), shadow };
+        let (correction, pairing) = match self.compensation {
+            None => (AnyCorrection::None, Pairing::Every),
+            Some(options) => {
+                let compensation = Compensation::new(options, &self.mean);
+                let pairing = compensation.pairing();
+                (AnyCorrection::Compensation(compensation), pairing)
+            }
+        };
+        let integrator = VplIntegrator::new(gather, (self.eye_samples, pairing), correction);
+        job.run(integrator.component(component))
+    }
+}
+
+/// A correction or none: one branch per point, and half of the integrators to compile.
+#[derive(Debug)]
+enum AnyCorrection<'m> {
+    None,
+    Compensation(Compensation<'m>),
+}
+
+impl<C: Spectrum> Correction<C> for AnyCorrection<'_> {
+    fn recover<G, M, P, R, T, S>(
+        &mut self,
+        gather: &mut Gather<'_, G, M, P, C, R, T>,
+        y: &Vertex,
+        which: Connected,
+        source: &mut S,
+    ) -> C
+    where
+        G: Geometry<C>,
+        M: Medium,
+        P: PhaseFunction,
+        R: SamplingExtinction,
+        T: RayTransmittance<M>,
+        S: UniformSource + ?Sized,
+    {
+        match self {
+            Self::None => Uncorrected.recover(gather, y, which, source),
+            Self::Compensation(compensation) => compensation.recover(gather, y, which, source),
+        }
+    }
+}
+
+impl<G, M, P, C, T> TileIntegrator<C> for PathTracer<'_, G, M, P, C, SpaceSampling<'_>, T>
+where
+    Self: Integrator<C>,
+{
+    fn truncated(&self) -> u64 {
+        Self::truncated(self)
+    }
+}
+
+impl<G, M, P, C, T> TileIntegrator<C>
+    for VplIntegrator<'_, G, M, P, C, SpaceSampling<'_>, T, AnyCorrection<'_>>
+where
+    Self: Integrator<C>,
+{
+    fn truncated(&self) -> u64 {
+        Self::truncated(self)
+    }
+    fn compensation_vertices(&self) -> (u64, u64) {
+        match self.correction() {
+            AnyCorrection::None => (0, 0),
+            AnyCorrection::Compensation(compensation) => compensation.vertices(),
+        }
+    }
+}
