@@ -41,7 +41,14 @@ fn passes_give_the_bits_of_one_pass() {
     });
     let empty = with(|scene| drop(scene.as_object_mut().unwrap().remove("medium")));
     let folder = tempfile::tempdir().unwrap();
-    for scene in [scene(), coloured, separate, single, empty] {
+    let mut paths = coloured.clone();
+    paths["surfaces"] = json!([{ "kind": "rectangle", "corner": [-9, -9, 16], "edge_u": [18, 0, 0],
+        "edge_v": [0, 18, 0], "material": { "kind": "diffuse", "reflectance": [0.1, 0.5, 0.9] }, "emission": 0.5 }]);
+    paths["integrator"] = json!({ "kind": "path_tracer" });
+    // Always in passes, each with a batch of its own.
+    let mut lights = paths.clone();
+    lights["integrator"] = json!({ "kind": "vpl", "light_paths": 8, "eye_samples": 2, "clamp": 1 });
+    for scene in [scene(), coloured, separate, single, empty, paths, lights] {
         let samples = ["--samples-per-pixel", "5", "--threads", "2"];
         let (_, image, statistics) = render(&scene, folder.path(), &samples);
         assert_eq!(statistics["warnings"], json!([]));

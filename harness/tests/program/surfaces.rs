@@ -1,7 +1,9 @@
-//! The surfaces of a scene: what is refused.
+//! The surfaces of a scene: what is seen, and what is refused.
 
+use crate::common::harness;
 use crate::render::with;
 use crate::render_refusals::refused;
+use fairflight_harness::image::Image;
 use serde_json::{Value, json};
 
 fn ball(radius: f64, material: &Value) -> Value {
@@ -32,6 +34,23 @@ fn surfaces_refused(surfaces: Value, change: impl FnOnce(&mut Value), words: &[&
 fn key_refused(mut surface: Value, key: &str, value: Value, words: &[&str]) {
     surface[key] = value;
     surfaces_refused(json!([square(&gray()), surface]), |_| (), words);
+}
+
+#[test]
+fn an_emitter_without_other_lights_is_seen_as_bright_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("image.pfm");
+    let scene = with(|scene| {
+        scene.as_object_mut().unwrap().remove("medium");
+        scene["lights"] = json!([]);
+        scene["integrator"] = json!({ "kind": "path_tracer" });
+        scene["surfaces"] = json!([{ "kind": "rectangle", "corner": [-50, -50, 10], "edge_u": [100, 0, 0],
+            "edge_v": [0, 100, 0], "material": { "kind": "diffuse", "reflectance": 0 }, "emission": [1, 2, 3] }]);
+    });
+    let outcome = harness(&["render", "-", "--out", out.to_str().unwrap()], &scene.to_string());
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""));
+    let image = Image::read(&out).unwrap();
+    assert!(image.pixels().iter().all(|pixel| *pixel == [1.0, 2.0, 3.0]), "{:?}", image.pixels()[0]);
 }
 
 #[test]
