@@ -128,8 +128,7 @@ impl<C: Spectrum> Draw<'_, C> {
         let scale = 1.0 / (f64::from(samples) * photons as f64);
         pixels.iter_mut().for_each(|pixel| *pixel = *pixel * scale);
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        let cost =
-            Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated, ..Spent::default() };
+        let cost = Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated, ..Spent::default() };
         Ok(Replica { pixels, samples, cost })
     }
 }
