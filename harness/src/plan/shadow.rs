@@ -11,7 +11,7 @@ use std::cell::Cell;
 
 /// What is the same for all rays.
 #[derive(Debug)]
-pub enum Shadow {
+pub(super) enum Shadow {
     /// In closed form, where the medium has one.
     Regular,
     /// By an estimator.

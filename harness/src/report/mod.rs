@@ -12,4 +12,5 @@ mod single_scattering;
 mod speed;
 mod stability;
 pub mod study;
+mod virtual_lights;
 pub mod write;

@@ -1,7 +1,7 @@
 //! The reports that there are, by name.
 
 use super::document::{Document, Options};
-use super::{free_flight, particle_tracing, single_scattering};
+use super::{free_flight, particle_tracing, single_scattering, virtual_lights};
 use crate::{Environment, Failure};
 
 /// A report that can be asked for.
@@ -24,7 +24,7 @@ pub(crate) enum Study {
 }
 
 /// All reports; the first is the default.
-pub(crate) const REPORTS: [ReportKind; 4] = [
+pub(crate) const REPORTS: [ReportKind; 5] = [
     ReportKind {
         name: "standard",
         about: "transmittance estimators against their closed forms",
@@ -44,6 +44,11 @@ pub(crate) const REPORTS: [ReportKind; 4] = [
         name: "free-flight",
         about: "distance samplers by their law, algorithm 2 from homogeneous to inhomogeneous, two wavelengths",
         study: Study::Document(free_flight::document),
+    },
+    ReportKind {
+        name: "vpl",
+        about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
+        study: Study::Document(virtual_lights::document),
     },
 ];
 

@@ -34,7 +34,12 @@ impl Subject {
     }
 
     /// The plan of one replica.
-    fn plan(&self, samples_per_pixel: u32, seed: u64, library: &MediumLibrary) -> Result<ScenePlan, Failure> {
+    pub(super) fn plan(
+        &self,
+        samples_per_pixel: u32,
+        seed: u64,
+        library: &MediumLibrary,
+    ) -> Result<ScenePlan, Failure> {
         let overrides = SceneOverrides { samples_per_pixel: Some(samples_per_pixel), seed: Some(seed) };
         let spec = SceneSpec::parse(&self.scene.to_string(), overrides)?;
         let mut plan = ScenePlan::of(&spec, library)?;
@@ -106,6 +111,16 @@ pub(super) struct Replicas {
     samples_per_pixel: u32,
 }
 
+/// What images tell of their virtual point lights, on average.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct VirtualLights {
+    pub(super) per_set: f64,
+    /// CPU seconds of an image, a part of all.
+    pub(super) light_path_seconds: f64,
+    /// The share of compensation vertices that lay where something was lost; NaN if none was tried.
+    pub(super) share_inside: f64,
+}
+
 /// A number with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
@@ -125,6 +140,19 @@ impl Measured {
         let variance = values.iter().map(|x| (x.ln() - mean).powi(2)).sum::<f64>() / (n - 1.0);
         let factor = (student_quantile(values.len() - 1) * (variance / n).sqrt()).exp();
         Self { value, interval: [value / factor, value * factor] }
+    }
+
+    /// The ratio of two independent ones, their relative errors added in squares.
+    pub(super) fn over(self, other: &Self) -> Self {
+        let half = |m: &Self| 0.5 * (m.interval[1] / m.interval[0]).ln();
+        let (value, width) = (self.value / other.value, half(&self).hypot(half(other)).exp());
+        Self { value, interval: [value / width, value * width] }
+    }
+
+    /// "value \[low, high\]" with so many digits behind the point.
+    pub(super) fn words(&self, digits: usize) -> String {
+        let [low, high] = self.interval;
+        format!("{:.digits$} [{low:.digits$}, {high:.digits$}]", self.value)
     }
 
     /// A decreasing or increasing function of it.
@@ -184,6 +212,63 @@ impl Replicas {
             }
         }
         (mean, self.squared_error().value / n)
+    }
+
+    /// The mean radiance of all images and its standard error, from their scatter: right also where the pixels of an image share
+    /// their randomness.
+    pub(super) fn mean_of_images(&self) -> (f64, f64) {
+        let means: Vec<f64> =
+            self.images.iter().map(|image| image.gray().sum::<f64>() / image.means().len() as f64).collect();
+        let n = means.len() as f64;
+        let mean = means.iter().sum::<f64>() / n;
+        let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        (mean, (variance / n).sqrt())
+    }
+
+    /// The mean radiance of all images with its 95 % interval, from their scatter.
+    pub(super) fn measured_mean(&self) -> Measured {
+        let (value, error) = self.mean_of_images();
+        let half = student_quantile(self.images.len() - 1) * error;
+        Measured { value, interval: [value - half, value + half] }
+    }
+
+    /// CPU seconds of an image with its 95 % interval.
+    pub(super) fn measured_seconds(&self) -> Measured {
+        let seconds: Vec<f64> = self.images.iter().map(|image| image.moments.cpu_seconds()).collect();
+        Measured::of_positive(&seconds)
+    }
+
+    /// Mean and standard error of each block of `side` x `side` pixels, row by row, from the scatter of the images.
+    pub(super) fn means_of_blocks(&self, side: usize) -> Vec<(f64, f64)> {
+        let [width, height] = self.first().resolution();
+        let n = self.images.len() as f64;
+        let block = |image: &Picture, column: usize, row: usize| {
+            let pixels = image.means();
+            let rows = (row * side..(row + 1) * side).map(|y| &pixels[y * width + column * side..][..side]);
+            rows.flatten().map(|[gray, ..]| *gray).sum::<f64>() / (side * side) as f64
+        };
+        let mut blocks = Vec::new();
+        for row in 0..height / side {
+            for column in 0..width / side {
+                let means: Vec<f64> = self.images.iter().map(|image| block(image, column, row)).collect();
+                let mean = means.iter().sum::<f64>() / n;
+                let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
+                blocks.push((mean, (variance / n).sqrt()));
+            }
+        }
+        blocks
+    }
+
+    /// What the images told of their virtual point lights, if they had any.
+    pub(super) fn virtual_lights(&self) -> VirtualLights {
+        let n = self.images.len() as f64;
+        let mean =
+            |of: fn(&Moments) -> f64| self.images.iter().map(|image| of(&image.moments)).sum::<f64>() / n;
+        VirtualLights {
+            per_set: mean(Moments::lights_per_set),
+            light_path_seconds: mean(Moments::light_path_seconds),
+            share_inside: mean(|moments| moments.compensation_share().unwrap_or(f64::NAN)),
+        }
     }
 
     /// Look-ups per pixel of one image, on average.

@@ -1,0 +1,58 @@
+//! The report on virtual point lights: the figures of engelhardt-2013, measured again.
+
+mod anisotropy;
+mod approximations;
+mod claims;
+mod clamping;
+mod costs;
+mod reference;
+mod scenes;
+mod strategies;
+
+use crate::report::document::{Document, Options};
+use crate::report::run::Run;
+use crate::{Environment, Failure};
+use std::time::Instant;
+
+/// What makes the images of the room neither black nor white.
+const EXPOSURE: f64 = 0.9;
+
+/// Measures the report, on the threads of the current pool.
+pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
+    let clock = Instant::now();
+    let steps =
+        strategies::steps() + clamping::steps() + approximations::steps() + costs::steps() + anisotropy::steps();
+    let run = Run::new(options, environment, steps);
+    let clamping = clamping::study(&run)?;
+    let strategies = strategies::study(&run)?;
+    let approximations = approximations::study(&run)?;
+    let costs = costs::study(&run)?;
+    let anisotropy = anisotropy::study(&run)?;
+    run.finish();
+    let mut document = Document::new(
+        "vpl",
+        "Virtual point lights and bias compensation",
+        options,
+        environment.provenance(options.seed),
+    );
+    document.summary = claims::summary(&strategies, &clamping, &approximations, &costs);
+    document.unsound = claims::unsound(&strategies, &clamping, &anisotropy);
+    document.claims = vec![
+        claims::e1(&clamping),
+        claims::e2(&strategies),
+        claims::e3(&approximations),
+        claims::e4(&approximations),
+        claims::e5(&costs),
+        claims::e6(&anisotropy),
+        claims::r4(&strategies, &document.unsound),
+    ];
+    document.sections = clamping
+        .sections
+        .into_iter()
+        .chain([strategies.section])
+        .chain(approximations.sections)
+        .chain([costs.section, anisotropy.section])
+        .collect();
+    document.seconds = clock.elapsed().as_secs_f64();
+    Ok(document)
+}

@@ -1,0 +1,191 @@
+//! Fig. 6 and 7: the strategies of compensation at equal time, and their error over time.
+
+use super::reference::Reference;
+use super::scenes::{self, BOUND, Choice, path_tracer};
+use crate::Failure;
+use crate::report::document::{
+    Axis, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
+};
+use crate::report::replicas::{Measured, Replicas};
+use crate::report::run::Run;
+use crate::report::speed::curve as joined;
+use serde_json::Value;
+
+/// Independent images per measurement.
+const REPLICAS: u32 = 6;
+/// Light paths of a set.
+const PATHS: u32 = 100;
+/// The points of a curve have so many times the sets of the one before.
+const STEP: u32 = 4;
+/// Points of a curve.
+const POINTS: u32 = 3;
+/// Paths per pixel of the reference.
+const REFERENCE: u32 = 8192;
+
+/// A way to render the room.
+struct Method {
+    name: &'static str,
+    strategy: &'static str,
+    integrator: Value,
+    /// Sets of lights, or paths per pixel, of the longest image; chosen so that it takes about a second and a half of CPU time.
+    sets: u32,
+}
+
+fn methods() -> Vec<Method> {
+    let method = |name, strategy, placement, eye_samples, sets| {
+        let choice = Choice { strategy, placement, ..Choice::EXACT };
+        Method { name, strategy, integrator: choice.lights(PATHS, eye_samples, BOUND), sets }
+    };
+    let free = "free_flight";
+    let local = "locally_homogeneous";
+    vec![
+        method("1-to-N", "one_to_many", free, 1, 16),
+        method("1-to-N, locally homogeneous", "one_to_many", local, 1, 16),
+        method("N-to-1", "many_to_one", free, 1, 16),
+        method("N-to-1, locally homogeneous", "many_to_one", local, 1, 16),
+        method("1-to-1", "one_to_one", free, 4, 128),
+        method("1-to-1, locally homogeneous", "one_to_one", local, 4, 64),
+        Method { name: "path tracing", strategy: "", integrator: path_tracer(), sets: 256 },
+    ]
+}
+
+pub(super) fn steps() -> u64 {
+    1 + (methods().len() as u64) * u64::from(POINTS)
+}
+
+/// What one method came to at its longest image.
+pub(super) struct Entry {
+    pub(super) name: &'static str,
+    pub(super) strategy: &'static str,
+    pub(super) rmse: Measured,
+    /// MSE · CPU seconds \[radiance² s\]: at equal time the ratio of two is that of their mean squared errors.
+    pub(super) cost: Measured,
+    pub(super) seconds: f64,
+    pub(super) z: f64,
+    pub(super) share_inside: f64,
+    images: Replicas,
+}
+
+/// All methods.
+pub(super) struct Strategies {
+    pub(super) entries: Vec<Entry>,
+    pub(super) section: Section,
+}
+
+impl Strategies {
+    /// The entry of a method.
+    pub(super) fn of(&self, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.name == name)
+    }
+
+    /// The ratio of two methods' RMSE at equal time.
+    pub(super) fn ratio(&self, of: &str, to: &str) -> Option<Measured> {
+        Some(self.of(of)?.cost.over(&self.of(to)?.cost).map(f64::sqrt))
+    }
+}
+
+pub(super) fn study(run: &Run<'_>) -> Result<Strategies, Failure> {
+    let subject = scenes::smoke_room(48)?;
+    let reference = Reference::of(run, &subject, REFERENCE, run.seed(0, 0))?;
+    let (mut entries, mut curves) = (Vec::new(), Vec::new());
+    for (m, method) in (0..).zip(methods()) {
+        let subject = subject.with("integrator", method.integrator);
+        let mut marks = Vec::new();
+        for point in 0..POINTS {
+            let sets = (run.samples(method.sets) / STEP.pow(POINTS - 1 - point)).max(1);
+            let images = subject.measure(sets, (run.seed(1 + m, u64::from(point)), REPLICAS), &run.media)?;
+            let rmse = reference.rmse(&images);
+            let seconds = images.seconds();
+            marks.push(Mark::measured(seconds, rmse.value, rmse.interval));
+            run.advance();
+            if point + 1 == POINTS {
+                entries.push(Entry {
+                    name: method.name,
+                    strategy: method.strategy,
+                    rmse,
+                    cost: rmse.map(|rmse| rmse * rmse * seconds),
+                    seconds,
+                    z: reference.z_of(&images),
+                    share_inside: images.virtual_lights().share_inside,
+                    images,
+                });
+            }
+        }
+        curves.push(joined(method.name, marks));
+    }
+    let mut chart = Chart::new(
+        "strategies-time",
+        "Fig. 7: error over time",
+        Axis::logarithmic("CPU seconds of an image [s]"),
+        Axis::logarithmic("RMSE [radiance]"),
+    );
+    chart.caption = "Every set of lights is new, so that all fall with the square root of time.".to_owned();
+    chart.curves = curves;
+    let mut section = Section::new("strategies", "Fig. 6 and 7: strategies of compensation at equal time");
+    section.text = vec![format!(
+        "The room with smoke in gray, 48 x 48 pixels, sets of {PATHS} light paths, b = {BOUND}, unlimited steps, transmittance and visibility \
+         exact: all of these are unbiased. 1-to-N: one compensation vertex per point, connected with all lights. N-to-1: one vertex for each \
+         light. 1-to-1: each point on the eye ray has one light and one vertex, four points per ray. Errors are against {REFERENCE} paths per \
+         pixel, whose own error ({:.1e}) is taken off; intervals are 95 %, from {REPLICAS} independent images with sets of their own.",
+        reference.squared_error.sqrt()
+    )];
+    section.charts.push(chart);
+    section.tables.push(table(&entries));
+    section.galleries.push(gallery(&entries, &reference));
+    Ok(Strategies { entries, section })
+}
+
+fn table(entries: &[Entry]) -> Table {
+    let mut table = Table::new(
+        "strategies-table",
+        "Strategies at equal time",
+        "Relative RMSE: at the time that 1-to-N takes for its own. z: mean radiance of the images less that of the reference, in standard \
+         errors of both. Inside: compensation vertices that lay where something was lost.",
+        &[
+            ("method", ""),
+            ("sets or paths", "1"),
+            ("CPU seconds", "s"),
+            ("RMSE", "radiance"),
+            ("RMSE at equal time / 1-to-N", "1"),
+            ("inside", "1"),
+            ("z", "1"),
+        ],
+    );
+    for entry in entries {
+        let relative = entry.cost.over(&entries[0].cost).map(f64::sqrt);
+        table.rows.push(vec![
+            Cell::text(entry.name),
+            Cell::Count(u64::from(entry.images.rays_per_pixel())),
+            Cell::Number(entry.seconds),
+            Cell::measured(entry.rmse.value, entry.rmse.interval),
+            Cell::measured(relative.value, relative.interval),
+            Cell::maybe(entry.share_inside.is_finite().then_some(entry.share_inside)),
+            Cell::Number(entry.z),
+        ]);
+    }
+    table
+}
+
+fn gallery(entries: &[Entry], reference: &Reference) -> Gallery {
+    let picture = |id: &str, label: &str, lines: Vec<String>, images: &Replicas| Picture {
+        id: format!("strategies-{id}"),
+        label: label.to_owned(),
+        lines,
+        resolution: images.first().resolution(),
+        pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure: super::EXPOSURE },
+    };
+    let exact = picture("reference", "reference", vec!["path tracing".to_owned()], &reference.shown);
+    let of_entry = |(i, entry): (usize, &Entry)| {
+        let lines = vec![format!("RMSE {:.4}", entry.rmse.value), format!("{:.1} CPU s", entry.seconds)];
+        picture(&i.to_string(), entry.name, lines, &entry.images)
+    };
+    Gallery {
+        id: "strategies-images".to_owned(),
+        title: "Fig. 6: the images at roughly equal time".to_owned(),
+        caption: "One image of each measurement.".to_owned(),
+        rows: vec![GalleryRow {
+            label: String::new(),
+            pictures: [exact].into_iter().chain(entries.iter().enumerate().map(of_entry)).collect(),
+        }],
+    }
+}
