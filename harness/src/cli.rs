@@ -103,6 +103,9 @@ pub(crate) struct RenderArguments {
     /// An image (.pfm or .exr) to measure the error against
     #[arg(long, value_name = "IMAGE")]
     pub reference: Option<PathBuf>,
+    /// Stop after the pass of one sample per pixel in which this time runs out; not for photons
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub time_limit: Option<f64>,
     /// Instead of the scene's samples per pixel
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..))]
     pub samples_per_pixel: Option<u32>,
@@ -112,6 +115,13 @@ pub(crate) struct RenderArguments {
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
+        _ => Err("must be a number above 0".to_owned()),
+    }
 }
 
 /// Arguments of `verify`.

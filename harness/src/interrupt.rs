@@ -3,11 +3,15 @@
 //! Whoever creates something temporary registers it with [`remove_on_interrupt`] and keeps the [`Guard`] until it is complete or gone.
 //! The handler, which only the program installs, removes what is registered at that moment and ends the process. A program that embeds
 //! the library keeps its own handlers; the registry is then a list that nobody reads.
+//!
+//! Work that can stop early with a result says so with [`stop_gently`]: the first interrupt then only asks it to, the second ends the
+//! process.
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Exit code 130: ended by a signal, as a shell says it of SIGINT.
 pub const INTERRUPTED: i32 = 130;
@@ -15,24 +19,57 @@ pub const INTERRUPTED: i32 = 130;
 /// How often a removal is tried while another thread may still be creating files in the same folder.
 const ATTEMPTS: usize = 100;
 
-static REGISTRY: Mutex<Registry> = Mutex::new(Registry { next: 0, entries: Vec::new() });
+static REGISTRY: Mutex<Registry> = Mutex::new(Registry { next: 0, entries: Vec::new(), gentle: Vec::new() });
 
-/// Ends the process on SIGINT, SIGTERM and SIGHUP (on Windows: Ctrl-C, Ctrl-Break, close) after a removal of what is registered.
+/// Ends the process on SIGINT, SIGTERM and SIGHUP (on Windows: Ctrl-C, Ctrl-Break, close) after a removal of what is registered,
+/// unless something is running that can [`stop gently`](stop_gently) and was not asked yet.
 ///
 /// # Errors
 /// If the process has such a handler already, or the system refuses one.
 pub fn install() -> Result<(), String> {
     let handler = || {
-        // It is never released: from here on nothing is created under a shield, and nothing is put in place.
-        let shield = shield();
-        shield.registry.clear();
         let mut stderr = io::stderr();
         // The line of a progress bar has no end yet.
         let gap = if stderr.is_terminal() { "\n" } else { "" };
+        let shield = shield();
+        if shield.registry.ask_to_stop() {
+            let _ = writeln!(stderr, "{gap}interrupted: stops with what is done, again: stops at once");
+            return;
+        }
+        // It is never released: from here on nothing is created under a shield, and nothing is put in place.
+        shield.registry.clear();
         let _ = writeln!(stderr, "{gap}interrupted");
         std::process::exit(INTERRUPTED);
     };
     ctrlc::try_set_handler(handler).map_err(|error| error.to_string())
+}
+
+/// Until it is dropped, the first interrupt only asks to stop.
+#[must_use = "an interrupt ends the process once this is dropped"]
+pub fn stop_gently() -> GentleStop {
+    let requested = Arc::new(AtomicBool::new(false));
+    shield().registry.gentle.push(Arc::clone(&requested));
+    GentleStop { requested }
+}
+
+/// See [`stop_gently`].
+#[derive(Debug)]
+pub struct GentleStop {
+    requested: Arc<AtomicBool>,
+}
+
+impl GentleStop {
+    /// Whether an interrupt asked to stop.
+    #[must_use]
+    pub fn is_requested(&self) -> bool {
+        self.requested.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for GentleStop {
+    fn drop(&mut self) {
+        shield().registry.gentle.retain(|other| !Arc::ptr_eq(other, &self.requested));
+    }
 }
 
 /// Registers a file, or a folder with all that is in it, for removal. See [`Shield::remove_on_interrupt`].
@@ -99,6 +136,7 @@ enum What {
 struct Registry {
     next: u64,
     entries: Vec<(u64, PathBuf, What)>,
+    gentle: Vec<Arc<AtomicBool>>,
 }
 
 impl Registry {
@@ -112,6 +150,12 @@ impl Registry {
 
     fn forget(&mut self, key: u64) {
         self.entries.retain(|entry| entry.0 != key);
+    }
+
+    /// Asks all work that can stop gently to do so; whether some was not asked before.
+    fn ask_to_stop(&self) -> bool {
+        // Not `any`, which would stop at the first one.
+        self.gentle.iter().filter(|requested| !requested.swap(true, Ordering::Relaxed)).count() > 0
     }
 
     /// Removes what is registered. Nobody is left to be told what could not be removed.
@@ -141,7 +185,7 @@ mod tests {
 
     /// A registry of its own: the guards of others in this process are not touched.
     fn registry() -> Registry {
-        Registry { next: 0, entries: Vec::new() }
+        Registry { next: 0, entries: Vec::new(), gentle: Vec::new() }
     }
 
     /// The guard of a registry of its own must not speak to the global one.
@@ -185,6 +229,16 @@ mod tests {
         std::os::unix::fs::symlink(&target, &link).unwrap();
         remove(&link);
         assert!(target.is_dir() && fs::symlink_metadata(&link).is_err());
+    }
+
+    #[test]
+    fn work_that_can_stop_is_asked_once() {
+        let mut registry = registry();
+        assert!(!registry.ask_to_stop(), "nobody is there to be asked");
+        registry.gentle = vec![Arc::default(), Arc::default()];
+        assert!(registry.ask_to_stop());
+        assert!(registry.gentle.iter().all(|requested| requested.load(Ordering::Relaxed)));
+        assert!(!registry.ask_to_stop());
     }
 
     #[test]

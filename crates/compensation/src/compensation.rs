@@ -61,6 +61,7 @@ impl<'m> Compensation<'m> {
     }
 
     /// One compensation vertex of `y` connected with `which`, and those behind it.
+    #[inline(never)]
     fn step<G, M, P, C, R, T, S>(
         &mut self,
         gather: &mut Gather<'_, G, M, P, C, R, T>,

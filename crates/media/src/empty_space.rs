@@ -41,18 +41,14 @@ mod tests {
     use crate::{Homogeneous, Observed};
     use std::sync::Arc;
 
-    fn is_empty<M: Medium>(_medium: M) -> bool {
-        M::IS_EMPTY
-    }
-
     #[test]
     fn emptiness_is_known_behind_wrappers() {
-        assert!(is_empty(EmptySpace));
-        assert!(is_empty(&EmptySpace) && is_empty(Arc::new(EmptySpace)));
-        assert!(is_empty(Observed::new(&EmptySpace)));
-        // A value that happens to be 0 is not known to the compiler.
-        let zero = Homogeneous::new(0.0).unwrap();
-        assert!(!is_empty(zero) && !is_empty(Observed::new(&zero)) && !is_empty(Arc::new(zero)));
+        const {
+            assert!(EmptySpace::IS_EMPTY && <&EmptySpace>::IS_EMPTY && Arc::<EmptySpace>::IS_EMPTY);
+            assert!(Observed::<&EmptySpace>::IS_EMPTY);
+            // A value that happens to be 0 is not known to the compiler.
+            assert!(!Homogeneous::IS_EMPTY && !Observed::<&Homogeneous>::IS_EMPTY);
+        }
     }
 
     #[test]

@@ -30,6 +30,16 @@ impl<C: Spectrum> Background<C> {
         sum
     }
 
+    /// A bound of the radiance from any direction, in the greatest channel.
+    #[must_use]
+    pub fn greatest(&self) -> f64 {
+        let maps = self
+            .maps
+            .iter()
+            .map(|map| map.pixels().iter().map(|pixel| pixel.max_channel()).fold(0.0, f64::max));
+        self.constant.max_channel() + maps.sum::<f64>()
+    }
+
     /// Whether there is no light at all.
     #[must_use]
     pub fn is_dark(&self) -> bool {

@@ -44,6 +44,12 @@ impl<C: Spectrum> EnvironmentMap<C> {
         Ok(map)
     }
 
+    /// All pixels, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[C] {
+        &self.pixels
+    }
+
     /// The radiance from a direction of unit length.
     #[must_use]
     pub fn radiance(&self, towards: DVec3) -> C {

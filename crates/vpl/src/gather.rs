@@ -109,7 +109,7 @@ where
     }
 
     /// What several of them add.
-    #[inline]
+    #[inline(never)]
     pub fn connected<S: UniformSource + ?Sized>(
         &mut self,
         y: &Vertex,
@@ -142,6 +142,7 @@ where
     /// is connected through it.
     ///
     /// Never bounded: an emitter of some size is left to the weights, and a point cannot be compensated.
+    #[inline(never)]
     pub fn emitters<S: UniformSource + ?Sized>(&mut self, y: &Vertex, source: &mut S) -> C {
         let Self { world, heuristic, walk, shadow, .. } = self;
         let mut radiance = world.emitters_at(*heuristic, y, shadow, source);

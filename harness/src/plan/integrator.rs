@@ -130,6 +130,21 @@ impl IntegratorPlan {
         }
     }
 
+    /// Whether the pixels of a pass share a batch that is prepared for it: a pass is then of one sample per pixel.
+    #[must_use]
+    pub fn draws_in_batches(&self) -> bool {
+        match self {
+            Self::Transmittance(_)
+            | Self::RegularTransmittance
+            | Self::ParticleTracer(_)
+            | Self::PhotonTracer(_)
+            | Self::LineSplitting { .. }
+            | Self::SingleScattering(_)
+            | Self::PathTracer(_) => false,
+            Self::Vpl(_) => true,
+        }
+    }
+
     /// Does a job with the integrator inside, on a medium of which only look-ups are to be had. The first look-up that an
     /// estimator is not defined for is left in `unlawful`.
     ///

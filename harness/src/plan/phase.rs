@@ -43,6 +43,16 @@ impl AnyPhase {
     }
 }
 
+impl AnyPhase {
+    /// Its greatest value, to the fineness of a grid of cosines that has both ends \[1/sr\].
+    #[must_use]
+    pub fn greatest(&self) -> f64 {
+        const STEPS: u32 = 1024;
+        let cosine = |i: u32| -1.0 + 2.0 * f64::from(i) / f64::from(STEPS);
+        (0..=STEPS).map(|i| self.eval(cosine(i))).fold(0.0, f64::max)
+    }
+}
+
 impl PhaseFunction for AnyPhase {
     #[inline]
     fn eval(&self, cosine: f64) -> f64 {

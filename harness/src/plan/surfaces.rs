@@ -30,11 +30,6 @@ pub(super) fn build<C: Spectrum>(
 /// # Errors
 /// If the integrator is blind to them, or nothing of a light can be seen because of them.
 pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
-    if let (Some(name), false) = (spec.integrator.blind_to_surfaces(), spec.surfaces.is_empty()) {
-        return Err(Failure::refused(format!(
-            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer and vpl"
-        )));
-    }
     let camera = spec.camera.origin();
     for (i, light) in spec.lights.iter().enumerate() {
         let LightSpec::Point { position, .. } = light else { continue };
@@ -55,6 +50,11 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
         if let Some(j) = solid_around(&spec.surfaces, camera, around) {
             return Err(shut_in(&format!("surfaces.{i}"), j));
         }
+    }
+    if let (Some(name), false) = (spec.integrator.blind_to_surfaces(), spec.surfaces.is_empty()) {
+        return Err(Failure::refused(format!(
+            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer and vpl"
+        )));
     }
     Ok(())
 }

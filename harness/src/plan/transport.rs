@@ -2,14 +2,16 @@
 
 use super::integrator::needs_closed_form;
 use super::shadow::Shadow;
-use super::{AnyMedium, IntegratorJob, MediumJob, SpaceSampling, TileIntegrator, Unlawful, WalkPlan};
+use super::{
+    AnyMedium, AnyPhase, IntegratorJob, MediumJob, Radiant, SpaceSampling, TileIntegrator, Unlawful, WalkPlan,
+};
 use crate::Failure;
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
-use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
+use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
 use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
 use fairflight_paths::transport::{Vertex, World};
 use fairflight_paths::{Heuristic, Integrator, PathTracer, RayTransmittance, SamplingExtinction};
-use fairflight_scene::{Geometry, Lights, NoSurfaces, Spectrum, Surfaces, Volume};
+use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces, Volume};
 use fairflight_sources::UniformSource;
 use fairflight_vpl::{
     Component, Connected, Correction, Gather, Pairing, Term, Uncorrected, Vpl, VplIntegrator,
@@ -108,6 +110,47 @@ impl VplPlan {
             keep_near: spec.keep_near,
             component: spec.component,
         })
+    }
+}
+
+impl VplPlan {
+    /// The bound of the geometric term in a scene whose emitters have this power together \[1/length²\].
+    ///
+    /// # Errors
+    /// If it is to come from the scene, and nothing there has a radiance.
+    pub fn bound<C: Spectrum>(
+        &self,
+        radiant: &Radiant<C>,
+        phase: &AnyPhase,
+        power: f64,
+    ) -> Result<f64, Failure> {
+        match self.clamp {
+            ClampSpec::Unclamped => return Ok(f64::INFINITY),
+            ClampSpec::Bound(bound) => return Ok(bound),
+            ClampSpec::Scene => {}
+        }
+        let surfaces = Geometry::surfaces(&radiant.surfaces);
+        let emitted = surfaces.iter().map(|surface| surface.emission.max_channel()).fold(0.0, f64::max);
+        let radiance = emitted.max(radiant.lights.background.greatest());
+        if power > 0.0 && radiance == 0.0 {
+            return Err(Failure::refused(
+                "integrator.clamp: scene needs a light with a radiance, but there are only lights of points and directions; \
+                 allowed are a number and null",
+            ));
+        }
+        let reflectance = |surface: &Surface<C>| match surface.material {
+            Material::Diffuse { reflectance } => reflectance.max_channel(),
+            Material::Mirror | Material::Dielectric { .. } => 0.0,
+        };
+        let brightness = Brightness {
+            radiance,
+            power,
+            paths: u64::from(self.light_paths),
+            reflectance: surfaces.iter().map(reflectance).fold(0.0, f64::max),
+            scattering: radiant.albedo.max_channel() * phase.greatest(),
+        };
+        // Without light any bound will do.
+        Ok(if power > 0.0 { brightness.bound() } else { f64::INFINITY })
     }
 }
 

@@ -1,125 +1,138 @@
-//! Drawing an image in parallel, the same one whatever the number of threads.
+//! A pass over an image in parallel, the same one whatever the number of threads.
 
-use super::pixel::Pixel;
+use super::canvas::{Canvas, Spent};
+use super::tile::{AddSamples, Tile};
+use super::virtual_lights::Batch;
 use crate::Failure;
-use crate::plan::{IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, TileIntegrator, Unlawful};
+use crate::plan::{
+    AnyPhase, IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, Stage, TileIntegrator, Unlawful,
+};
 use cpu_time::ThreadTime;
 use fairflight_media::{LineThickness, Medium, Observed};
 use fairflight_scene::{Spectrum, Volume};
-use fairflight_sources::{Seeded, UniformSource};
-use glam::DVec3;
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Columns and rows of a tile: one worker's piece of work, with one integrator.
-const TILE: u32 = 16;
-
-/// An image with what it cost.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Drawn<C> {
-    /// Row by row from the top.
-    pub pixels: Vec<Pixel<C>>,
-    pub cost: Spent,
-    /// The variance of the image's mean that pixels share, 0 where they share nothing; `None` if it is not known.
-    pub shared_variance: Option<f64>,
-    /// What is to be said of the walks.
-    pub warning: Option<String>,
-}
-
-impl Drawn<DVec3> {
-    /// An image of three channels that were drawn one by one.
-    pub(super) fn of_channels([red, green, blue]: [Drawn<f64>; 3]) -> Self {
-        let pixels = red.pixels.iter().zip(&green.pixels).zip(&blue.pixels);
-        Self {
-            pixels: pixels.map(|((r, g), b)| Pixel::of_channels([*r, *g, *b])).collect(),
-            cost: red.cost.and(green.cost).and(blue.cost),
-            // Of the mean of three independent channels.
-            shared_variance: [red.shared_variance, green.shared_variance, blue.shared_variance]
-                .into_iter()
-                .sum::<Option<f64>>()
-                .map(|sum| sum / 9.0),
-            warning: red.warning.or(green.warning).or(blue.warning),
-        }
-    }
-}
-
-/// What drawing cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Spent {
-    /// Look-ups of the medium.
-    pub lookups: u64,
-    /// CPU seconds over all threads, without the start of them.
-    pub cpu_seconds: f64,
-    /// Walks that were cut at their greatest number of collisions.
-    pub truncated: u64,
-}
-
-impl Spent {
-    pub(super) fn and(self, other: Self) -> Self {
-        Self {
-            lookups: self.lookups + other.lookups,
-            cpu_seconds: self.cpu_seconds + other.cpu_seconds,
-            truncated: self.truncated + other.truncated,
-        }
-    }
-}
-
-/// A rectangle of pixels: from, to (not included).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Tile {
-    columns: [u32; 2],
-    rows: [u32; 2],
-}
-
-/// Draws all pixels of a plan with the variates of `seed`. `advance` is told how many samples were added.
-///
-/// # Errors
-/// If a look-up is not lawful, or a sample not finite: that of the first tile where it happens.
-pub(super) fn draw<C: Spectrum>(
-    plan: &ScenePlan,
-    radiant: &Radiant<C>,
-    seed: u64,
-    advance: &(dyn Fn(u64) + Sync),
-) -> Result<Drawn<C>, Failure> {
-    plan.medium.with(Draw { plan, radiant, seed, advance })
-}
-
+/// What is drawn: shared by all workers.
 pub(super) struct Draw<'a, C> {
     pub plan: &'a ScenePlan,
     pub radiant: &'a Radiant<C>,
     pub seed: u64,
+    /// Is told how many samples were added.
     pub advance: &'a (dyn Fn(u64) + Sync),
 }
 
-impl<C: Spectrum> MediumJob for Draw<'_, C> {
-    type Output = Result<Drawn<C>, Failure>;
+/// Adds a pass of `samples` samples per pixel to a canvas.
+///
+/// Passes continue the streams of the pixels and their moments: one of n samples gives the same bits as n of one sample, for
+/// integrators that carry nothing from ray to ray.
+pub(super) struct AddPass<'a, C> {
+    pub draw: Draw<'a, C>,
+    pub canvas: &'a mut Canvas<C>,
+    pub samples: u32,
+}
+
+/// How the integrator of a tile comes about, in one pass over a medium.
+///
+/// An integrator whose pixels share what is prepared for a pass (virtual point lights, say) says so in
+/// [`IntegratorPlan::draws_in_batches`]: its passes then are of one sample per pixel, and the variance of the image's mean comes from
+/// the means of the passes.
+pub(super) trait Pass<M: Medium, C: Spectrum>: Sync {
+    /// What all tiles of a pass share.
+    type Batch: Sync;
+
+    /// Prepares pass number `pass`, from 0, on the threads of the current pool: all its variates are those of (`draw.seed`, `pass`).
+    ///
+    /// # Errors
+    /// If a look-up is not lawful.
+    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Self::Batch, Spent), Failure>;
+
+    /// Does a job with an integrator of one tile.
+    ///
+    /// # Errors
+    /// If the integrator does not fit medium or lights.
+    fn integrate<'s, J: IntegratorJob<C>>(
+        &'s self,
+        batch: &'s Self::Batch,
+        volume: &'s ObservedVolume<'_, M, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure>;
+}
+
+/// Integrators that need nothing but look-ups.
+struct ByLookUps<'a, C>(&'a IntegratorPlan, &'a Radiant<C>);
+
+/// The same on a medium whose optical thickness has a closed form.
+struct ByClosedForm<'a, C>(&'a IntegratorPlan, &'a Radiant<C>);
+
+/// What is prepared for a pass of any integrator.
+fn prepare<M: Medium + Sync, C: Spectrum>(
+    draw: &Draw<'_, C>,
+    medium: &M,
+    pass: usize,
+) -> Result<(Batch<C>, Spent), Failure> {
+    match &draw.plan.integrator {
+        IntegratorPlan::Vpl(plan) => draw.virtual_lights(medium, plan, pass),
+        _ => Ok((Batch::none(), Spent::default())),
+    }
+}
+
+impl<C> Batch<C> {
+    fn stage<'s>(&'s self, radiant: &'s Radiant<C>) -> Stage<'s, C> {
+        let Radiant { lights, surfaces, .. } = radiant;
+        Stage { lights, surfaces, vpls: &self.vpls, bound: self.bound }
+    }
+}
+
+impl<M: Medium + Sync, C: Spectrum> Pass<M, C> for ByLookUps<'_, C> {
+    type Batch = Batch<C>;
+
+    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
+        prepare(draw, medium, pass)
+    }
+
+    fn integrate<'s, J: IntegratorJob<C>>(
+        &'s self,
+        batch: &'s Batch<C>,
+        volume: &'s ObservedVolume<'_, M, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure> {
+        self.0.by_look_ups(volume, batch.stage(self.1), unlawful, job)
+    }
+}
+
+impl<M: LineThickness + Sync, C: Spectrum> Pass<M, C> for ByClosedForm<'_, C> {
+    type Batch = Batch<C>;
+
+    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
+        prepare(draw, medium, pass)
+    }
+
+    fn integrate<'s, J: IntegratorJob<C>>(
+        &'s self,
+        batch: &'s Batch<C>,
+        volume: &'s ObservedVolume<'_, M, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+        job: J,
+    ) -> Result<J::Output, Failure> {
+        self.0.by_closed_form(volume, batch.stage(self.1), unlawful, job)
+    }
+}
+
+impl<C: Spectrum> MediumJob for AddPass<'_, C> {
+    type Output = Result<(), Failure>;
 
     fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output {
-        let integrator = &self.plan.integrator;
-        // Whether they fit together is known before the first tile.
-        integrator.by_look_ups(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
-        let warning = self.check_growth(medium)?;
-        let drawn = self.tiles(warning, |tile| {
-            self.tile(medium, |volume, unlawful| {
-                let job = DrawTile { plan: self.plan, seed: self.seed, tile };
-                integrator.by_look_ups(volume, &self.radiant.lights, unlawful, job)
-            })
-        })?;
-        self.finish(medium, drawn)
+        let pass = ByLookUps(&self.draw.plan.integrator, self.draw.radiant);
+        self.add(medium, &pass)
     }
 
     fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
-        let integrator = &self.plan.integrator;
-        integrator.by_closed_form(&self.volume(medium), &self.radiant.lights, &Cell::new(None), Fits)?;
-        let warning = self.check_growth(medium)?;
-        let drawn = self.tiles(warning, |tile| {
-            self.tile(medium, |volume, unlawful| {
-                let job = DrawTile { plan: self.plan, seed: self.seed, tile };
-                integrator.by_closed_form(volume, &self.radiant.lights, unlawful, job)
-            })
-        })?;
-        self.finish(medium, drawn)
+        let pass = ByClosedForm(&self.draw.plan.integrator, self.draw.radiant);
+        self.add(medium, &pass)
     }
 }
 
@@ -131,10 +144,43 @@ impl<C> IntegratorJob<C> for Fits {
     fn run<I: TileIntegrator<C>>(self, _integrator: I) {}
 }
 
-/// The pixels of a tile, and how many walks were cut.
-type TilePixels<C> = Result<(Vec<Pixel<C>>, u64), Failure>;
 /// The volume of a tile, observed.
-pub(super) type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a crate::plan::AnyPhase, C>;
+pub(super) type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a AnyPhase, C>;
+
+impl<C: Spectrum> AddPass<'_, C> {
+    /// # Errors
+    /// If a look-up is not lawful, or a sample not finite: that of the first tile where it happens. The canvas is then of no use.
+    fn add<M: Medium + Sync>(self, medium: &M, pass: &impl Pass<M, C>) -> Result<(), Failure> {
+        let Self { draw, canvas, samples } = self;
+        let integrator = &draw.plan.integrator;
+        debug_assert!(samples == 1 || !integrator.draws_in_batches(), "a batch is for one sample per pixel");
+        let number = canvas.pass_means.len();
+        let (batch, spent) = pass.prepare(&draw, medium, number)?;
+        canvas.cost = canvas.cost.and(spent);
+        if number == 0 {
+            // Whether they fit together is known before the first tile.
+            pass.integrate(&batch, &draw.volume(medium), &Cell::new(None), Fits)?;
+            canvas.warning = draw.check_growth(medium)?;
+        }
+        let (seed, drawn) = (canvas.seed, canvas.samples);
+        let added = draw.tiles(&mut canvas.tiles, samples, |tile| {
+            let job = AddSamples { camera: &draw.plan.camera, tile, drawn, samples, seed };
+            draw.tile(medium, |volume, unlawful| pass.integrate(&batch, volume, unlawful, job)?)
+        })?;
+        let mut sum = 0.0;
+        for (of_tile, spent) in added {
+            sum += of_tile;
+            canvas.cost = canvas.cost.and(spent);
+        }
+        let [columns, rows] = draw.plan.camera.resolution().map(f64::from);
+        canvas.pass_means.push(sum / (columns * rows * f64::from(samples)));
+        canvas.samples += samples;
+        if let IntegratorPlan::PhotonTracer(walk) = integrator {
+            canvas.photons = Some(draw.photons(medium, walk)?);
+        }
+        Ok(())
+    }
+}
 
 impl<C: Spectrum> Draw<'_, C> {
     pub(super) fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
@@ -156,14 +202,6 @@ impl<C: Spectrum> Draw<'_, C> {
         growth
     }
 
-    /// What is not drawn pixel by pixel.
-    fn finish<M: Medium + Sync>(&self, medium: &M, drawn: Drawn<C>) -> Result<Drawn<C>, Failure> {
-        match &self.plan.integrator {
-            IntegratorPlan::PhotonTracer(walk) => self.add_photons(medium, walk, drawn),
-            _ => Ok(drawn),
-        }
-    }
-
     /// Whether all look-ups so far were lawful.
     pub(super) fn judge<M: Medium>(&self, observed: &Observed<M>) -> Result<(), Failure> {
         if !observed.is_finite() {
@@ -183,140 +221,138 @@ impl<C: Spectrum> Draw<'_, C> {
         Ok(())
     }
 
-    /// One tile on an observed medium; what was met is judged afterwards.
+    /// One tile on an observed medium; what was met is judged afterwards. Gives the sum of the samples, and the cost.
     fn tile<M: Medium>(
         &self,
         medium: &M,
-        draw: impl FnOnce(&ObservedVolume<'_, M, C>, &Cell<Option<Unlawful>>) -> Result<TilePixels<C>, Failure>,
-    ) -> Result<(Vec<Pixel<C>>, Spent), Failure> {
-        let plan = self.plan;
+        draw: impl FnOnce(
+            &ObservedVolume<'_, M, C>,
+            &Cell<Option<Unlawful>>,
+        ) -> Result<super::tile::Added, Failure>,
+    ) -> Result<(f64, Spent), Failure> {
         let clock = ThreadTime::now();
         let volume = self.volume(medium);
         let unlawful = Cell::new(None);
-        let drawn = draw(&volume, &unlawful)?;
+        let added = draw(&volume, &unlawful);
         // Before the samples: a look-up that is not finite explains a sample that is not.
         self.judge(&volume.medium)?;
         if let Some(unlawful) = unlawful.get() {
-            return Err(plan.integrator.explain(unlawful));
+            return Err(self.plan.integrator.explain(unlawful));
         }
-        let (pixels, truncated) = drawn?;
+        let added = added?;
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        Ok((pixels, Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated }))
+        let (compensation_tried, compensation_inside) = added.compensation;
+        let spent = Spent {
+            lookups: volume.medium.lookups(),
+            cpu_seconds,
+            truncated: added.truncated,
+            compensation_tried,
+            compensation_inside,
+            ..Spent::default()
+        };
+        Ok((added.sum, spent))
     }
 
-    /// All tiles, put together in the order of their pixels.
-    fn tiles(
+    /// All tiles; what comes of them in their order.
+    fn tiles<T: Send>(
         &self,
-        warning: Option<String>,
-        tile: impl Fn(Tile) -> Result<(Vec<Pixel<C>>, Spent), Failure> + Sync,
-    ) -> Result<Drawn<C>, Failure> {
-        let [columns, rows] = self.plan.camera.resolution();
-        let tiles = tiles_of(columns, rows);
+        tiles: &mut [Tile<C>],
+        samples: u32,
+        tile: impl Fn(&mut Tile<C>) -> Result<T, Failure> + Sync,
+    ) -> Result<Vec<T>, Failure> {
         // A tile behind the first failure is not drawn; one before it is, since it might fail too.
         let first_failure = AtomicUsize::new(usize::MAX);
-        let drawn: Vec<Option<Result<_, Failure>>> = tiles
-            .par_iter()
+        let done: Vec<Option<Result<T, Failure>>> = tiles
+            .par_iter_mut()
             .enumerate()
             .with_max_len(1)
-            .map(|(i, &area)| {
+            .map(|(i, drawn)| {
                 if i > first_failure.load(Ordering::Relaxed) {
                     return None;
                 }
-                let drawn = tile(area).map_err(|failure| failure.within(area.name()));
-                if drawn.is_err() {
+                let area = drawn.area;
+                let done = tile(drawn).map_err(|failure| failure.within(area.name()));
+                if done.is_err() {
                     first_failure.fetch_min(i, Ordering::Relaxed);
                 }
-                (self.advance)(area.pixels() * u64::from(self.plan.samples_per_pixel));
-                Some(drawn)
+                (self.advance)(area.pixels() * u64::from(samples));
+                Some(done)
             })
             .collect();
-        let mut pixels = vec![Pixel::new(); columns as usize * rows as usize];
-        let mut cost = Spent::default();
-        for (area, drawn) in tiles.iter().zip(drawn.into_iter().flatten()) {
-            let (tile, spent) = drawn?;
-            let width = (area.columns[1] - area.columns[0]) as usize;
-            for (row, line) in (area.rows[0]..).zip(tile.chunks_exact(width)) {
-                let start = row as usize * columns as usize + area.columns[0] as usize;
-                pixels[start..start + width].copy_from_slice(line);
-            }
-            cost = cost.and(spent);
-        }
-        Ok(Drawn { pixels, cost, shared_variance: Some(0.0), warning })
-    }
-}
-
-fn tiles_of(columns: u32, rows: u32) -> Vec<Tile> {
-    let cut = |start: u32, end: u32| [start, end.min(start + TILE)];
-    let steps = |end: u32| (0..end).step_by(TILE as usize);
-    let row =
-        |top: u32| steps(columns).map(move |left| Tile { columns: cut(left, columns), rows: cut(top, rows) });
-    steps(rows).flat_map(row).collect()
-}
-
-impl Tile {
-    fn pixels(self) -> u64 {
-        u64::from(self.columns[1] - self.columns[0]) * u64::from(self.rows[1] - self.rows[0])
-    }
-
-    fn name(self) -> String {
-        let Self { columns, rows } = self;
-        format!("columns {} to {}, rows {} to {}", columns[0], columns[1] - 1, rows[0], rows[1] - 1)
-    }
-}
-
-struct DrawTile<'a> {
-    plan: &'a ScenePlan,
-    seed: u64,
-    tile: Tile,
-}
-
-impl<C: Spectrum> IntegratorJob<C> for DrawTile<'_> {
-    type Output = TilePixels<C>;
-
-    fn run<I: TileIntegrator<C>>(self, mut integrator: I) -> Self::Output {
-        let Self { plan, seed, tile } = self;
-        let [columns, _] = plan.camera.resolution();
-        let mut pixels = Vec::with_capacity(tile.pixels() as usize);
-        for row in tile.rows[0]..tile.rows[1] {
-            for column in tile.columns[0]..tile.columns[1] {
-                let index = u64::from(row) * u64::from(columns) + u64::from(column);
-                let mut source = Seeded::for_batch(seed, index);
-                let mut pixel = Pixel::new();
-                for i in 0..plan.samples_per_pixel {
-                    let within = [source.next_uniform(), source.next_uniform()];
-                    let line = plan.camera.ray([column, row], within);
-                    let radiance = integrator.radiance(&line, &mut source);
-                    if !radiance.is_finite() {
-                        return Err(Failure::refused(format!(
-                            "the radiance of pixel (column {column}, row {row}), sample {i}, seed {seed} is {:?}",
-                            radiance.rgb()
-                        )));
-                    }
-                    pixel.push(radiance);
-                }
-                pixels.push(pixel);
-            }
-        }
-        Ok((pixels, integrator.truncated()))
+        // Up to the first failure there is no gap.
+        done.into_iter().flatten().collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::{MediumLibrary, Spectra};
+    use crate::render::canvas::MeanVariance;
+    use crate::spec::{SceneOverrides, SceneSpec};
+    use fairflight_media::{EmptySpace, Line};
+    use fairflight_paths::Integrator;
+    use fairflight_sources::{Seeded, UniformSource};
+
+    /// Sees the number of the batch, and one variate of the pixel.
+    struct Shows(f64);
+
+    impl Integrator<f64> for Shows {
+        fn radiance<S: UniformSource + ?Sized>(&mut self, _line: &Line, source: &mut S) -> f64 {
+            self.0 + 1e-3 * (source.next_uniform() - 0.5)
+        }
+    }
+
+    impl TileIntegrator<f64> for Shows {
+        fn truncated(&self) -> u64 {
+            2
+        }
+    }
+
+    /// A batch is one number.
+    struct Numbers;
+
+    impl<M: Medium> Pass<M, f64> for Numbers {
+        type Batch = f64;
+
+        fn prepare(&self, draw: &Draw<'_, f64>, _: &M, pass: usize) -> Result<(f64, Spent), Failure> {
+            let number = Seeded::for_batch(draw.seed, pass as u64).next_uniform();
+            Ok((number, Spent { lookups: 7, ..Spent::default() }))
+        }
+
+        fn integrate<'s, J: IntegratorJob<f64>>(
+            &'s self,
+            batch: &'s f64,
+            _: &'s ObservedVolume<'_, M, f64>,
+            _: &'s Cell<Option<Unlawful>>,
+            job: J,
+        ) -> Result<J::Output, Failure> {
+            Ok(job.run(Shows(*batch)))
+        }
+    }
 
     #[test]
-    fn tiles_cover_each_pixel_once() {
-        for (columns, rows) in [(1, 1), (16, 16), (17, 33), (40, 5)] {
-            let mut seen = vec![0; columns as usize * rows as usize];
-            for tile in tiles_of(columns, rows) {
-                for row in tile.rows[0]..tile.rows[1] {
-                    for column in tile.columns[0]..tile.columns[1] {
-                        seen[(row * columns + column) as usize] += 1;
-                    }
-                }
-            }
-            assert!(seen.iter().all(|&times| times == 1), "{columns} x {rows}");
+    fn a_batch_is_prepared_for_each_pass_and_shared() {
+        let scene = include_str!("../../scenes/eq21-environment.json");
+        let spec = SceneSpec::parse(scene, SceneOverrides::default()).unwrap();
+        let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
+        let Spectra::Gray(radiant) = &plan.spectra else { panic!("it is gray") };
+        let mut canvas = Canvas::new(plan.camera.resolution(), 5);
+        for _ in 0..3 {
+            let draw = Draw { plan: &plan, radiant, seed: 5, advance: &|_| () };
+            AddPass { draw, canvas: &mut canvas, samples: 1 }.add(&EmptySpace, &Numbers).unwrap();
         }
+        let batches = [0, 1, 2].map(|pass| Seeded::for_batch(5, pass).next_uniform());
+        for (mean, batch) in canvas.pass_means.iter().zip(batches) {
+            assert!((mean - batch).abs() < 1e-4, "{mean} of batch {batch}");
+        }
+        let drawn = canvas.drawn(true);
+        assert_eq!((drawn.samples, drawn.cost.lookups), (3, 21));
+        assert_eq!(drawn.cost.truncated, 3 * 2 * canvas.tiles.len() as u64);
+        // What the pixels tell by themselves is far less: they share the batches.
+        let MeanVariance::OfPasses(Some(variance)) = drawn.mean_variance else { panic!("three passes") };
+        let mean = batches.iter().sum::<f64>() / 3.0;
+        let expected = batches.iter().map(|batch| (batch - mean).powi(2)).sum::<f64>() / 6.0;
+        assert!((variance / expected - 1.0).abs() < 1e-2, "{variance}, expected {expected}");
     }
 }

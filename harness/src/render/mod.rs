@@ -1,23 +1,39 @@
 //! `harness render`: a scene in, images and statistics out.
+//!
+//! An image is drawn in one pass, or pass by pass: under `--time-limit`, and where the integrator has a batch for each. Between
+//! passes the files are put in place now and then, with statistics that say that the image is not finished: somebody may watch it, and
+//! a kill leaves the last one. An interrupt ends such an image after a whole pass.
 
+mod canvas;
 mod draw;
 mod output;
+mod painting;
+mod passes;
 mod photons;
 mod pixel;
 mod statistics;
+mod tile;
+mod virtual_lights;
+mod warnings;
 
 use crate::cli::RenderArguments;
 use crate::estimate::{named, read};
-use crate::image::{Exposure, Format, Image};
+use crate::image::{Exposure, Image};
+use crate::interrupt::{INTERRUPTED, stop_gently};
 use crate::plan::{IntegratorPlan, MediumLibrary, ScenePlan, Spectra};
-use crate::spec::{LightSpec, SceneOverrides, SceneSpec, SurfaceSpec};
+use crate::spec::{SceneOverrides, SceneSpec};
 use crate::{DONE, Environment, Failure};
-use draw::{Drawn, draw};
-use fairflight_sources::derive_seed;
-use output::{Kind, Prepared};
+use output::Outputs;
+pub(crate) use painting::{Painting, moments};
+use passes::{EarlyEnd, End, Painted, Rhythm, paint};
 pub(crate) use statistics::Moments;
+use statistics::Statistics;
 use std::io::{Read, Write};
-use std::time::Instant;
+
+/// The least time between two unfinished images in files \[s\].
+const FILES_EVERY: f64 = 2.0;
+/// The least time between two errors in the progress bar \[s\].
+const ERROR_EVERY: f64 = 0.1;
 
 pub(crate) fn run(
     arguments: &RenderArguments,
@@ -25,39 +41,38 @@ pub(crate) fn run(
     stdin: &mut dyn Read,
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
-    let kinds = arguments.out.iter().map(|path| Kind::of(path)).collect::<Result<Vec<Kind>, _>>()?;
+    let mut outputs = Outputs::of(&arguments.out)?;
     let name = named(&arguments.scene);
     let in_scene = |failure: Failure| failure.within(&name);
     let text = read(&arguments.scene, stdin).map_err(in_scene)?;
     let overrides = SceneOverrides { samples_per_pixel: arguments.samples_per_pixel, seed: arguments.seed };
     let spec = SceneSpec::parse(&text, overrides).map_err(in_scene)?;
     let plan = ScenePlan::of(&spec, &MediumLibrary::default()).map_err(in_scene)?;
-    let reference = reference(arguments, &plan)?;
-    let mut files = arguments.out.iter().map(|path| Prepared::new(path)).collect::<Result<Vec<_>, _>>()?;
+    if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {
+        return Err(Failure::refused(
+            "--time-limit: photons come in replicas of the whole image, not in passes",
+        ));
+    }
+    let in_passes = arguments.time_limit.is_some() || plan.integrator.draws_in_batches();
+    // Before there is a file, and until all are in place: who interrupts gets what is done.
+    let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
+    let job = Job { name, spec, reference: reference(arguments, &plan)?, plan, environment };
+    outputs.prepare()?;
 
-    let (moments, seconds) =
-        environment.on_threads(arguments.threads, || measure(&plan, environment)).map_err(in_scene)?;
-    let image = moments.image(&plan).map_err(|error| Failure::refused(error).within(&name))?;
-    let warnings = warnings(&spec, &plan, &moments);
+    let (painted, (image, statistics)) = environment.on_threads(arguments.threads, || {
+        let painted = job.paint(early.as_ref(), &mut outputs)?;
+        let finished = job.finished(&painted)?;
+        Ok((painted, finished))
+    })?;
     // Nobody is left to tell if standard error is closed.
-    for warning in &warnings {
+    for warning in &statistics.warnings {
         let _ = writeln!(stderr, "warning: {warning}");
     }
-    let reference = reference.as_ref().map(|(image, file)| (image, file.clone()));
-    let provenance = environment.provenance(plan.seed);
-    let statistics = moments.statistics(&plan, reference, seconds, warnings, provenance);
-    for ((path, kind), file) in arguments.out.iter().zip(kinds).zip(&mut files) {
-        let bytes = match kind {
-            Kind::Image(format) => image.encode(format),
-            Kind::Statistics => serde_json::to_vec_pretty(&statistics).map_err(|error| error.to_string()),
-        };
-        file.write(&bytes.map_err(|error| Failure::not_written(path, error))?)?;
-        if kind == Kind::Image(Format::Png) {
-            let _ = writeln!(stderr, "{}: {}", path.display(), Exposure::of(&image));
-        }
+    for path in outputs.tone_mapped() {
+        let _ = writeln!(stderr, "{}: {}", path.display(), Exposure::of(&image));
     }
-    output::put(files)?;
-    Ok(DONE)
+    outputs.put(&image, &statistics)?;
+    Ok(if painted.end == End::Interrupted { INTERRUPTED } else { DONE })
 }
 
 /// The image to compare with, as large as the one that is rendered.
@@ -77,73 +92,104 @@ fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Im
     Ok(Some((image, path.display().to_string())))
 }
 
-/// Draws the image, and says how long that took.
-fn measure(plan: &ScenePlan, environment: &Environment) -> Result<(Moments, f64), Failure> {
-    let [width, height] = plan.camera.resolution().map(u64::from);
-    let images = if matches!(plan.spectra, Spectra::Separate(_)) { 3 } else { 1 };
-    // Photons come on top of the background behind the medium.
-    let passes = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
-    let samples = width * height * u64::from(plan.samples_per_pixel) * images * passes;
-    let bar = environment.progress(samples, "rendering");
-    let clock = Instant::now();
-    let moments = moments(plan, &|samples| bar.inc(samples))?;
-    let seconds = clock.elapsed().as_secs_f64();
-    bar.finish_and_clear();
-    Ok((moments, seconds))
+/// What is to be rendered, and compared with what.
+struct Job<'a> {
+    name: String,
+    spec: SceneSpec,
+    plan: ScenePlan,
+    reference: Option<(Image, String)>,
+    environment: &'a Environment,
 }
 
-/// Draws the image of a plan on the threads of the current pool. `advance` is told how many samples were added.
-///
-/// # Errors
-/// If a look-up is not lawful, or a sample not finite.
-pub(crate) fn moments(plan: &ScenePlan, advance: &(dyn Fn(u64) + Sync)) -> Result<Moments, Failure> {
-    Ok(match &plan.spectra {
-        Spectra::Gray(radiant) => draw(plan, radiant, plan.seed, advance)?.into(),
-        Spectra::Colour(radiant) => draw(plan, radiant, plan.seed, advance)?.into(),
-        Spectra::Separate(channels) => {
-            let channel = |k: usize| {
-                // Streams of their own, so that the noise of the channels is independent.
-                let seed = derive_seed(plan.seed, k as u64);
-                draw(plan, &channels[k], seed, advance)
-                    .map_err(|failure| failure.within(["red", "green", "blue"][k]))
-            };
-            Drawn::of_channels([channel(0)?, channel(1)?, channel(2)?]).into()
+impl Job<'_> {
+    /// Draws the image; unfinished ones go to `outputs`.
+    fn paint(&self, early: Option<&EarlyEnd>, outputs: &mut Outputs) -> Result<Painted<'_>, Failure> {
+        let plan = &self.plan;
+        let [width, height] = plan.camera.resolution().map(u64::from);
+        let images = if matches!(plan.spectra, Spectra::Separate(_)) { 3 } else { 1 };
+        // Photons come on top of the background behind the medium.
+        let layers = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
+        let samples = width * height * u64::from(plan.samples_per_pixel) * images * layers;
+        let bar = self.environment.progress(samples, "rendering");
+        let (mut files, mut errors) = (Rhythm::new(FILES_EVERY), Rhythm::new(ERROR_EVERY));
+        let after_pass = |painting: &Painting<'_>, seconds: f64| {
+            errors.beat(seconds, || {
+                if !bar.is_hidden()
+                    && let Some(error) = self.error(painting)
+                {
+                    bar.set_message(error);
+                }
+                Ok(())
+            })?;
+            files.beat(seconds, || {
+                let (image, statistics) = self.result(&painting.moments(), seconds, None)?;
+                outputs.put(&image, &statistics)
+            })
+        };
+        let painted = paint(plan, early, &|samples| bar.inc(samples), after_pass);
+        bar.finish_and_clear();
+        painted.map_err(|failure| self.in_scene(failure))
+    }
+
+    /// What the progress bar says of an unfinished image, if there is something to compare it with.
+    fn error(&self, painting: &Painting<'_>) -> Option<String> {
+        let (reference, _) = self.reference.as_ref()?;
+        let rmse = painting.moments().squared_error(reference).sqrt();
+        Some(format!("rendering, RMSE {rmse:.3e}"))
+    }
+
+    fn finished(&self, painted: &Painted<'_>) -> Result<(Image, Statistics), Failure> {
+        let Painted { painting, seconds, end } = painted;
+        self.result(&painting.moments(), *seconds, Some(*end)).map_err(|failure| self.in_scene(failure))
+    }
+
+    fn result(
+        &self,
+        moments: &Moments,
+        seconds: f64,
+        end: Option<End>,
+    ) -> Result<(Image, Statistics), Failure> {
+        let image = moments.image(&self.plan).map_err(Failure::refused)?;
+        let warnings = warnings::warnings(&self.spec, &self.plan, moments, end);
+        let reference = self.reference.as_ref().map(|(image, file)| (image, file.clone()));
+        let provenance = self.environment.provenance(self.plan.seed);
+        Ok((image, moments.statistics(&self.plan, reference, seconds, warnings, provenance)))
+    }
+
+    /// A refusal names the scene; a file that cannot be written names itself.
+    fn in_scene(&self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Refused(_) => failure.within(&self.name),
+            Failure::NotWritten(_) => failure,
         }
-    })
+    }
 }
 
-/// What a reader of the image should know.
-fn warnings(spec: &SceneSpec, plan: &ScenePlan, moments: &Moments) -> Vec<String> {
-    let mut warnings = Vec::new();
-    warnings.extend(moments.warning());
-    if let Some(walk) = spec.integrator.walk()
-        && moments.truncated() > 0
-    {
-        warnings.push(format!(
-            "{} walks were cut after max_collisions = {}: what they had left is missing, a bias",
-            moments.truncated(),
-            walk.max_collisions
-        ));
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Terminal;
+
+    #[test]
+    fn the_bar_tells_the_error_of_what_is_drawn() {
+        let scene = include_str!("../../scenes/eq21-environment.json");
+        let mut spec = SceneSpec::parse(scene, SceneOverrides::default()).unwrap();
+        spec.lights.clear();
+        let mut plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
+        plan.samples_per_pixel = 2;
+        let [width, height] = plan.camera.resolution().map(|side| side as usize);
+        let environment = Environment::new(&[], Terminal::default());
+        let job = |value: f32| {
+            let reference = Image::new(width, height, vec![[value; 3]; width * height]);
+            let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
+            let reference = Some((reference, "reference.pfm".to_owned()));
+            Job { name: String::new(), spec: spec.clone(), plan, reference, environment: &environment }
+        };
+        let mut painting = Painting::new(&plan);
+        painting.add_pass(&|_| ()).unwrap();
+        // It is dark, the reference is not.
+        assert_eq!(job(0.25).error(&painting).unwrap(), "rendering, RMSE 2.500e-1");
+        assert_eq!(job(0.0).error(&painting).unwrap(), "rendering, RMSE 0.000e0");
+        assert_eq!(Job { reference: None, ..job(0.0) }.error(&painting), None);
     }
-    warnings.extend(spec.integrator.biased_baseline().map(|what| format!("integrator: {what}")));
-    let inside = |light: &LightSpec| matches!(light, LightSpec::Point { position, .. } if plan.bounds.contains(*position));
-    let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
-    if photons && spec.medium.is_some() && plan.bounds.contains(plan.camera.origin()) {
-        warnings.push(
-            "the camera stands in the medium: the connection of photons with it has no second moment, errors are \
-             underrated"
-                .to_owned(),
-        );
-    }
-    if spec.integrator.walk().is_some() && !photons && spec.medium.is_some() && spec.lights.iter().any(inside)
-    {
-        warnings.push(
-            "a point light lies in the medium: the connection with it has no second moment, errors are underrated"
-                .to_owned(),
-        );
-    }
-    if spec.lights.is_empty() && !spec.surfaces.iter().any(SurfaceSpec::emits) {
-        warnings.push("there is no light, the image is black".to_owned());
-    }
-    warnings
 }

@@ -1,7 +1,8 @@
 //! Files that appear whole or not at all.
 
+use super::statistics::Statistics;
 use crate::Failure;
-use crate::image::Format;
+use crate::image::{Format, Image};
 use crate::interrupt::{Guard, shield};
 use std::fs;
 use std::io::Write;
@@ -10,7 +11,7 @@ use tempfile::NamedTempFile;
 
 /// What a file is to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+enum Kind {
     /// The picture.
     Image(Format),
     /// The numbers.
@@ -19,7 +20,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// What the extension says.
-    pub(super) fn of(path: &Path) -> Result<Self, Failure> {
+    fn of(path: &Path) -> Result<Self, Failure> {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
             return Ok(Self::Statistics);
         }
@@ -32,9 +33,62 @@ impl Kind {
     }
 }
 
+/// All files that a run writes, once or again and again.
+#[derive(Debug)]
+pub(super) struct Outputs {
+    targets: Vec<(PathBuf, Kind)>,
+    /// Made in advance, for the next time that something is put.
+    prepared: Vec<Prepared>,
+}
+
+impl Outputs {
+    /// Files of these paths; nothing is touched yet.
+    ///
+    /// # Errors
+    /// If an extension says nothing.
+    pub(super) fn of(paths: &[PathBuf]) -> Result<Self, Failure> {
+        let targets = paths.iter().map(|path| Ok((path.clone(), Kind::of(path)?)));
+        Ok(Self { targets: targets.collect::<Result<_, Failure>>()?, prepared: Vec::new() })
+    }
+
+    /// Prepares to write: a long run should not end with the news that nobody can write there.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub(super) fn prepare(&mut self) -> Result<(), Failure> {
+        self.prepared =
+            self.targets.iter().map(|(path, _)| Prepared::new(path)).collect::<Result<_, Failure>>()?;
+        Ok(())
+    }
+
+    /// Writes all files and puts them in their places together; those that were there before are replaced.
+    ///
+    /// # Errors
+    /// If one cannot be written: none is put. If one cannot be put: those behind it are not.
+    pub(super) fn put(&mut self, image: &Image, statistics: &Statistics) -> Result<(), Failure> {
+        if self.prepared.is_empty() {
+            self.prepare()?;
+        }
+        for ((path, kind), file) in self.targets.iter().zip(&mut self.prepared) {
+            let bytes = match kind {
+                Kind::Image(format) => image.encode(*format),
+                Kind::Statistics => serde_json::to_vec_pretty(statistics).map_err(|error| error.to_string()),
+            };
+            file.write(&bytes.map_err(|error| Failure::not_written(path, error))?)?;
+        }
+        put(std::mem::take(&mut self.prepared))
+    }
+
+    /// The files that hold less than the image: they are tone-mapped.
+    pub(super) fn tone_mapped(&self) -> impl Iterator<Item = &Path> {
+        let is_png = |kind: &Kind| *kind == Kind::Image(Format::Png);
+        self.targets.iter().filter(move |(_, kind)| is_png(kind)).map(|(path, _)| path.as_path())
+    }
+}
+
 /// A temporary file beside the one that it will become.
 #[derive(Debug)]
-pub(super) struct Prepared {
+struct Prepared {
     given: PathBuf,
     target: PathBuf,
     file: NamedTempFile,
@@ -42,8 +96,8 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares to write `path`: a long run should not end with the news that nobody can write there.
-    pub(super) fn new(path: &Path) -> Result<Self, Failure> {
+    /// Prepares to write `path`.
+    fn new(path: &Path) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| Failure::not_written(path, error);
         // What a link points to is replaced, not the link.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -75,7 +129,7 @@ impl Prepared {
     }
 
     /// Fills the temporary file.
-    pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
         let file = self.file.as_file_mut();
         file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| Failure::not_written(&self.given, e))
     }
@@ -85,7 +139,7 @@ impl Prepared {
 ///
 /// # Errors
 /// If one cannot be: those behind it are not put either.
-pub(super) fn put(files: Vec<Prepared>) -> Result<(), Failure> {
+fn put(files: Vec<Prepared>) -> Result<(), Failure> {
     let mut result = Ok(());
     // Guards ask for the shield when they are dropped: what is left over outlives it.
     let mut left_over = Vec::new();

@@ -1,6 +1,7 @@
 //! Photons: all pixels at once, in independent replicas of the whole image.
 
-use super::draw::{Draw, Drawn, Spent};
+use super::canvas::{Drawn, MeanVariance, Spent};
+use super::draw::Draw;
 use crate::Failure;
 use crate::plan::WalkPlan;
 use cpu_time::ThreadTime;
@@ -23,17 +24,37 @@ struct Replica<C> {
     cost: Spent,
 }
 
+/// The light of photons, to be added to what is drawn pixel by pixel.
+#[derive(Clone, Debug)]
+pub(super) struct PhotonLayer<C> {
+    /// Mean, and variance of one sample, of each pixel.
+    pixels: Vec<(C, C)>,
+    /// The variance of the image's mean that pixels share; `None` for one replica.
+    shared_variance: Option<f64>,
+    cost: Spent,
+}
+
+impl<C: Spectrum> PhotonLayer<C> {
+    /// Adds it to an image that holds the unscattered background.
+    pub(super) fn add_to(&self, drawn: &mut Drawn<C>) {
+        for (pixel, &(mean, variance)) in drawn.pixels.iter_mut().zip(&self.pixels) {
+            pixel.add_independent(mean, variance);
+        }
+        drawn.mean_variance = MeanVariance::OfPixels { shared: self.shared_variance };
+        drawn.cost = drawn.cost.and(self.cost);
+    }
+}
+
 impl<C: Spectrum> Draw<'_, C> {
-    /// Adds the light of scattered photons to an image that holds the unscattered background.
+    /// The light of scattered photons.
     ///
     /// # Errors
     /// If a look-up is not lawful, or a contribution not finite: that of the first replica where it happens.
-    pub(super) fn add_photons<M: Medium + Sync>(
+    pub(super) fn photons<M: Medium + Sync>(
         &self,
         medium: &M,
         walk: &WalkPlan,
-        mut drawn: Drawn<C>,
-    ) -> Result<Drawn<C>, Failure> {
+    ) -> Result<PhotonLayer<C>, Failure> {
         let count = REPLICAS.min(self.plan.samples_per_pixel);
         let replicas: Vec<Result<Replica<C>, Failure>> =
             (0..count).into_par_iter().map(|index| self.replica(medium, walk, index, count)).collect();
@@ -42,7 +63,9 @@ impl<C: Spectrum> Draw<'_, C> {
         // Of one sample, from replicas of n_k samples each: Σ n_k (x_k − x)²/(K − 1).
         let share = f64::from(count.max(2) - 1).recip();
         let mut image_means = vec![0.0; replicas.len()];
-        for (i, pixel) in drawn.pixels.iter_mut().enumerate() {
+        let [columns, rows] = self.plan.camera.resolution().map(|side| side as usize);
+        let mut pixels = Vec::with_capacity(columns * rows);
+        for i in 0..columns * rows {
             let mut mean = C::ZERO;
             for replica in &replicas {
                 mean += replica.pixels[i] * (f64::from(replica.samples) / samples);
@@ -53,16 +76,16 @@ impl<C: Spectrum> Draw<'_, C> {
                 variance += off * off * (f64::from(replica.samples) * share);
                 *image_mean += replica.pixels[i].mean();
             }
-            pixel.add_independent(mean, variance);
+            pixels.push((mean, variance));
         }
-        let pixels = drawn.pixels.len() as f64;
+        let n = pixels.len() as f64;
         let weights: Vec<f64> = replicas.iter().map(|replica| f64::from(replica.samples)).collect();
         let mean = image_means.iter().zip(&weights).map(|(m, n)| m * n).sum::<f64>() / samples;
         let variance: f64 =
             image_means.iter().zip(&weights).map(|(m, n)| n * (m - mean).powi(2) * share).sum();
-        drawn.shared_variance = (count > 1).then(|| variance / (pixels * pixels * samples));
-        drawn.cost = replicas.iter().fold(drawn.cost, |cost, replica| cost.and(replica.cost));
-        Ok(drawn)
+        let shared_variance = (count > 1).then(|| variance / (n * n * samples));
+        let cost = replicas.iter().fold(Spent::default(), |cost, replica| cost.and(replica.cost));
+        Ok(PhotonLayer { pixels, shared_variance, cost })
     }
 
     fn replica<M: Medium>(
@@ -105,7 +128,7 @@ impl<C: Spectrum> Draw<'_, C> {
         let scale = 1.0 / (f64::from(samples) * photons as f64);
         pixels.iter_mut().for_each(|pixel| *pixel = *pixel * scale);
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        let cost = Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated };
+        let cost = Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated, ..Spent::default() };
         Ok(Replica { pixels, samples, cost })
     }
 }

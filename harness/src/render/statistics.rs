@@ -1,9 +1,9 @@
 //! What an image tells: mean radiance, variance, cost, efficiency.
 
-use super::draw::{Drawn, Spent};
+use super::canvas::{Drawn, MeanVariance, Spent};
 use super::pixel::Pixel;
 use crate::image::Image;
-use crate::plan::ScenePlan;
+use crate::plan::{IntegratorPlan, ScenePlan};
 use crate::result::{Provenance, number};
 use fairflight_scene::Spectrum;
 use serde::Serialize;
@@ -17,6 +17,8 @@ pub(super) struct Statistics {
     pub reference: Option<ReferenceError>,
     pub cost: Cost,
     pub efficiency: Efficiency,
+    /// Null for an integrator without any.
+    pub virtual_point_lights: Option<VirtualLights>,
     /// How mean squared error and efficiency are meant.
     pub method: String,
     pub warnings: Vec<String>,
@@ -27,6 +29,7 @@ pub(super) struct Statistics {
 pub(super) struct Size {
     pub width: u32,
     pub height: u32,
+    /// Those that were drawn.
     pub samples_per_pixel: u32,
     pub channels: usize,
 }
@@ -66,6 +69,21 @@ pub(super) struct Cost {
     pub cpu_seconds: f64,
 }
 
+/// Virtual point lights, and what compensates for bounding them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct VirtualLights {
+    /// One for each sample per pixel.
+    pub sets: u32,
+    pub lights_per_set: f64,
+    /// CPU seconds of light paths, a part of all.
+    pub light_path_seconds: f64,
+    /// That were tried.
+    pub compensation_vertices: u64,
+    /// Of those, the share that lay where something was lost; null if none was tried.
+    #[serde(serialize_with = "number")]
+    pub compensation_share_inside: Option<f64>,
+}
+
 /// 1/(MSE · cost), null at zero error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Efficiency {
@@ -79,6 +97,8 @@ pub(super) struct Efficiency {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moments {
     channels: usize,
+    /// Per pixel.
+    samples: u32,
     /// Mean radiance per pixel.
     means: Vec<[f64; 3]>,
     /// The mean over pixels and channels of the variance of one sample.
@@ -97,9 +117,13 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
         let apart = sum(&mut pixels.iter().map(Pixel::mean_variance_gray)).map(|variance| variance / n);
         Self {
             channels: C::CHANNELS,
+            samples: drawn.samples,
             means: pixels.iter().map(|pixel| pixel.mean().rgb()).collect(),
             variance: sum(&mut pixels.iter().map(|pixel| pixel.variance().map(C::mean))),
-            mean_variance: apart.zip(drawn.shared_variance).map(|(apart, shared)| apart + shared),
+            mean_variance: match drawn.mean_variance {
+                MeanVariance::OfPixels { shared } => apart.zip(shared).map(|(apart, shared)| apart + shared),
+                MeanVariance::OfPasses(variance) => variance,
+            },
             cost: drawn.cost,
             warning: drawn.warning,
         }
@@ -150,7 +174,7 @@ impl Moments {
     }
 
     /// Mean over pixels and channels of the squared difference.
-    fn squared_error(&self, reference: &Image) -> f64 {
+    pub(super) fn squared_error(&self, reference: &Image) -> f64 {
         let differences = self.means.as_flattened().iter().zip(reference.pixels().as_flattened());
         let sum: f64 = differences.map(|(found, expected)| (found - f64::from(*expected)).powi(2)).sum();
         sum / (3.0 * self.means.len() as f64)
@@ -166,7 +190,7 @@ impl Moments {
         provenance: Provenance,
     ) -> Statistics {
         let [width, height] = plan.camera.resolution();
-        let samples = f64::from(plan.samples_per_pixel);
+        let samples = f64::from(self.samples);
         let mean = self.mean();
         let reference = reference.map(|(image, file)| (self.squared_error(image), file));
         let squared_error = match &reference {
@@ -185,8 +209,15 @@ impl Moments {
             squared_error.filter(|error| *error > 0.0 && cost > 0.0).map(|error| 1.0 / (error * cost))
         };
         let Spent { lookups, cpu_seconds, .. } = self.cost;
+        let virtual_lights = || VirtualLights {
+            sets: self.samples,
+            lights_per_set: self.cost.vpls as f64 / samples,
+            light_path_seconds: self.cost.light_path_seconds,
+            compensation_vertices: self.cost.compensation_tried,
+            compensation_share_inside: self.compensation_share(),
+        };
         Statistics {
-            image: Size { width, height, samples_per_pixel: plan.samples_per_pixel, channels: self.channels },
+            image: Size { width, height, samples_per_pixel: self.samples, channels: self.channels },
             radiance: Radiance {
                 mean: mean[..self.channels].iter().sum::<f64>() / self.channels as f64,
                 standard_error: self.mean_variance.map(f64::sqrt),
@@ -196,7 +227,7 @@ impl Moments {
             reference: reference.map(|(error, file)| ReferenceError { rmse: error.sqrt(), file }),
             cost: Cost {
                 lookups,
-                rays: self.means.len() as u64 * u64::from(plan.samples_per_pixel),
+                rays: self.means.len() as u64 * u64::from(self.samples),
                 seconds,
                 cpu_seconds,
             },
@@ -204,10 +235,32 @@ impl Moments {
                 per_second: efficiency(seconds),
                 per_lookup: efficiency(lookups as f64),
             },
+            virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
             method: format!("{method}; seconds by the clock on the wall; look-ups are counted while it runs"),
             warnings,
             provenance,
         }
+    }
+
+    /// The share of compensation vertices that lay where something was lost; `None` if none was tried.
+    pub(crate) fn compensation_share(&self) -> Option<f64> {
+        let Spent { compensation_tried, compensation_inside, .. } = self.cost;
+        (compensation_tried > 0).then(|| compensation_inside as f64 / compensation_tried as f64)
+    }
+
+    /// CPU seconds of light paths, a part of all.
+    pub(crate) fn light_path_seconds(&self) -> f64 {
+        self.cost.light_path_seconds
+    }
+
+    /// Virtual point lights per set.
+    pub(crate) fn lights_per_set(&self) -> f64 {
+        self.cost.vpls as f64 / f64::from(self.samples)
+    }
+
+    /// Samples per pixel.
+    pub(crate) fn samples(&self) -> u32 {
+        self.samples
     }
 
     /// What is to be said of the walks.

@@ -4,7 +4,9 @@ mod common;
 mod estimate;
 #[cfg(unix)]
 mod interrupt;
+mod passes;
 mod refusals;
 mod render;
 mod render_refusals;
 mod report;
+mod surfaces;

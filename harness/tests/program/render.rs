@@ -300,6 +300,22 @@ fn a_scene_without_a_medium_shows_the_environment() {
 }
 
 #[test]
+fn without_light_it_is_dark() {
+    let folder = tempfile::tempdir().unwrap();
+    let dark = with(|scene| scene["lights"] = json!([]));
+    let mut empty = dark.clone();
+    empty.as_object_mut().unwrap().remove("medium");
+    for scene in [dark, empty] {
+        let (outcome, paths) = render(&scene, folder.path(), &["image.pfm", "statistics.json"], &[]);
+        assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+        assert_eq!(outcome.stderr, "warning: there is no light, the image is black\n");
+        assert!(Image::read(&paths[0]).unwrap().pixels().iter().all(|pixel| *pixel == [0.0; 3]));
+        let statistics: Value = serde_json::from_slice(&std::fs::read(&paths[1]).unwrap()).unwrap();
+        assert_eq!(statistics["warnings"], json!(["there is no light, the image is black"]));
+    }
+}
+
+#[test]
 fn all_scenes_of_the_repository_render() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let mut count = 0;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 /// A scene that must be refused with all of `words`, and leave nothing behind.
 #[track_caller]
-fn refused(scene: &str, words: &[&str]) {
+pub(crate) fn refused(scene: &str, words: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let paths = ["a.pfm", "b.json"].map(|name| folder.path().join(name).to_str().unwrap().to_owned());
     let outcome = harness(&["render", "-", "--out", &paths[0], "--out", &paths[1]], scene);

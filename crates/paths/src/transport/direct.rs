@@ -36,6 +36,7 @@ where
     /// **Variance.** A point light at the distance r counts 1/r²; in a medium around it there is no second moment, and no second technique
     /// to help (raab-2008 section 4.1). For emitters of some size the weak singularity is gone: weight/density ≤ 1/density of the
     /// other technique, so that a contribution is at most L_e.
+    #[inline(never)]
     pub fn emitters_at<T, S>(
         &self,
         heuristic: Heuristic,

@@ -23,6 +23,7 @@ where
     P: PhaseFunction,
 {
     /// The radiance that arrives along a ray, by one path: the loop of [`PathTracer`](crate::PathTracer).
+    #[inline(never)]
     pub fn trace<R, T, S>(
         &self,
         walk: &Walk<R>,

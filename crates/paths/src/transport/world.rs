@@ -86,7 +86,8 @@ where
     }
 
     /// Follows a particle of energy 1 along a segment, whose end is the nearest surface or whatever else one is interested in.
-    #[inline]
+    // One copy per scene type: inlined into every integrator it is minutes of compilation, and a call costs next to nothing.
+    #[inline(never)]
     pub fn follow<R, S>(
         &self,
         walk: &Walk<R>,
@@ -116,7 +117,7 @@ where
     }
 
     /// An unbiased estimate of the transmittance of a segment \[1\], whatever surfaces lie on it.
-    #[inline]
+    #[inline(never)]
     pub fn transmittance<T, S>(&self, segment: &Segment, shadow: &mut T, source: &mut S) -> f64
     where
         T: RayTransmittance<M>,

@@ -7,10 +7,12 @@ mod material;
 mod rectangle;
 mod shape;
 mod sphere;
+mod surfaces;
 mod towards;
 
-pub use geometry::{Geometry, Hit, NoSurfaces, Segment, Surfaces};
+pub use geometry::{Geometry, Hit, NoSurfaces, Segment};
 pub use material::{Material, Surface, fresnel_reflectance, reflect, refract};
 pub use rectangle::Rectangle;
 pub use shape::{AreaSample, Shape, TowardsSample};
 pub use sphere::Sphere;
+pub use surfaces::Surfaces;

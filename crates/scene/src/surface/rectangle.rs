@@ -57,7 +57,7 @@ impl Rectangle {
         let to_corner = self.corner - line.origin;
         // Parallel to the plane this is infinite, or 0/0 within it: neither lies between the ends.
         let distance = to_corner.dot(self.normal) / line.direction.dot(self.normal);
-        if !(distance > 0.0 && distance < length && distance.is_finite()) {
+        if !(distance > 0.0 && distance < length) {
             return None;
         }
         // Edges belong to the rectangle, so that nothing passes between two that share one.

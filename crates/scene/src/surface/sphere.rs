@@ -16,11 +16,13 @@ pub struct Sphere {
 
 impl Sphere {
     /// # Errors
-    /// If a number is not finite, or the radius is not above 0.
+    /// If a number is not finite, or radius or area are not above 0.
     pub fn new(center: DVec3, radius: f64) -> Result<Self, SceneError> {
         SceneError::check_finite("center", center.is_finite())?;
         SceneError::check_positive("radius", radius)?;
-        Ok(Self { center, radius })
+        let sphere = Self { center, radius };
+        SceneError::check_positive("the area of the sphere", sphere.area())?;
+        Ok(sphere)
     }
 
     /// A line that only touches does not meet the sphere. One that starts on it meets it at the other end of its chord, which
@@ -33,17 +35,14 @@ impl Sphere {
         let distance = if leaves {
             2.0 * along
         } else {
-            // The point of the line nearest to the center, seen from there. For an origin far away the first projection is rounded
-            // at the size of that distance; the second one removes what is left along the line at the size of the sphere.
-            let offset = along * line.direction - to_center;
-            let rest = offset.dot(line.direction);
-            let closest = (offset - rest * line.direction).length();
+            // How near the line comes to the center, from the vector itself: rounded at the size of a far origin's distance, as the ray
+            // is, and not at that of its square, as a discriminant would be.
+            let closest = (along * line.direction - to_center).length();
             if closest >= self.radius {
                 return None;
             }
             // A product does not cancel as the difference of two squares does.
             let half = ((self.radius - closest) * (self.radius + closest)).sqrt();
-            let along = along - rest;
             if along > half { along - half } else { along + half }
         };
         (distance > 0.0 && distance < length).then_some(distance)
@@ -136,6 +135,12 @@ mod tests {
                 assert!((found - (10.0 * far - half)).abs() <= rounding, "{far} {h}");
             }
         }
+        // Across the axis near the rim, where all numbers are exact, half the chord is right to the last digits.
+        for h in [2f64.powi(-20), 2f64.powi(-40), 2f64.powi(-50)] {
+            let ray = Line { origin: dvec3(2.0 - h, 0.0, 5.0), direction: DVec3::Z };
+            let found = ball().intersect(&ray, f64::INFINITY, false).unwrap();
+            assert!((found / (h * (4.0 - h)).sqrt() - 1.0).abs() < 4e-16, "{h}");
+        }
         let mut next = Variates::new(21);
         for _ in 0..20_000 {
             let far = 10f64.powf(7.0 * next.draw());
@@ -209,5 +214,7 @@ mod tests {
             Err(SceneError::NotPositive { what: "radius", found: 0.0 })
         );
         assert!(matches!(Sphere::new(DVec3::ZERO, -1.0), Err(SceneError::NotPositive { .. })));
+        assert!(matches!(Sphere::new(DVec3::ZERO, 1e-170), Err(SceneError::NotPositive { .. })));
+        assert!(matches!(Sphere::new(DVec3::ZERO, 1e170), Err(SceneError::NotFinite { .. })));
     }
 }

@@ -182,9 +182,10 @@ mod tests {
         let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
         assert!(sphere.sample_towards(2.0 * DVec3::X, 0.5, 0.5).is_none());
         assert_eq!(sphere.pdf_towards(2.0 * DVec3::X, DVec3::X, 1.0), 0.0);
-        let speck = Shape::Sphere(Sphere::new(DVec3::ZERO, 1e-200).unwrap());
-        assert!(speck.sample_towards(DVec3::X, 0.5, 0.5).is_none());
-        assert_eq!(speck.pdf_towards(DVec3::X, DVec3::NEG_X, 1.0), 0.0);
+        let speck = Shape::Sphere(Sphere::new(DVec3::ZERO, 1e-150).unwrap());
+        let point = 1e10 * DVec3::X;
+        assert!(speck.sample_towards(point, 0.5, 0.5).is_none());
+        assert_eq!(speck.pdf_towards(point, DVec3::NEG_X, 1e10), 0.0);
     }
 
     #[test]
@@ -195,5 +196,25 @@ mod tests {
         assert_eq!((middle.direction, middle.distance), (DVec3::NEG_Z, 2.0));
         let rim = sphere.sample_towards(point, 1.0, 0.3).unwrap();
         assert!((rim.direction.z + 0.8).abs() < 1e-15 && (rim.distance - 4.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn distances_to_a_near_sphere_keep_their_digits() {
+        // Straight onto it from both sides; the difference of two near numbers is exact.
+        for radius in [0.3, 0.7, 1.1, 1.9] {
+            let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, radius).unwrap());
+            for z in [1e-6, 1e-11, -1e-11, -1e-6].map(|h| radius + h) {
+                let point = dvec3(0.0, 0.0, z);
+                let found = sphere.sample_towards(point, 0.0, 0.3).unwrap().distance;
+                assert!((found / (z - radius).abs() - 1.0).abs() < 2e-15, "{radius} {z} {found}");
+                // Slanted: the quadratic equation of the crossing, t² − 2 t along + z² − radius² = 0.
+                for u in [0.1, 0.2, 0.3] {
+                    let sample = sphere.sample_towards(point, u, 0.3).unwrap();
+                    let (t, along) = (sample.distance, -z * sample.direction.z);
+                    let last = (z - radius) * (z + radius);
+                    assert!((t * (t - 2.0 * along) + last).abs() < 4e-15 * last.abs(), "{radius} {z} {u}");
+                }
+            }
+        }
     }
 }

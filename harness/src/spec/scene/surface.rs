@@ -107,12 +107,11 @@ impl SurfaceSpec {
 }
 
 /// The edge that is to blame, as far as one is.
-fn refuse_rectangle(node: &Node<'_>, edges: [&Node<'_>; 2], error: &SceneError) -> Failure {
-    let SceneError::Degenerate { .. } = error else { return node.reject(error) };
-    let is_zero = |edge: &&&Node<'_>| edge.vector().is_ok_and(|edge| edge == DVec3::ZERO);
-    match edges.iter().find(is_zero) {
-        Some(edge) => edge.refuse("must not be zero"),
-        None => edges[1].refuse("must span an area with edge_u"),
+fn refuse_rectangle(node: &Node<'_>, [edge_u, edge_v]: [&Node<'_>; 2], error: &SceneError) -> Failure {
+    match error {
+        SceneError::Degenerate { what: "edge_u", because } => edge_u.refuse(format!("must not be {because}")),
+        SceneError::Degenerate { what: "edge_v", because } => edge_v.refuse(format!("must not be {because}")),
+        _ => node.reject(error),
     }
 }
 

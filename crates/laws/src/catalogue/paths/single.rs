@@ -94,11 +94,13 @@ fn words(sampling: Sampling) -> String {
     match sampling {
         Sampling::One(technique) => name(technique).to_owned(),
         Sampling::AttenuationResampled => "attenuation resampled".to_owned(),
-        Sampling::Two(first, second, Heuristic::Balance) => {
-            format!("{} and {}, balance", name(first), name(second))
-        }
-        Sampling::Two(first, second, Heuristic::Power) => {
-            format!("{} and {}, power", name(first), name(second))
+        Sampling::Two(first, second, heuristic) => {
+            let by = match heuristic {
+                Heuristic::Balance => "balance",
+                Heuristic::Power => "power",
+                Heuristic::Maximum => "maximum",
+            };
+            format!("{} and {}, {by}", name(first), name(second))
         }
     }
 }

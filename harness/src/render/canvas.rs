@@ -1,0 +1,170 @@
+//! An image that grows pass by pass, with what it cost.
+
+use super::photons::PhotonLayer;
+use super::pixel::Pixel;
+use super::tile::Tile;
+use fairflight_scene::Spectrum;
+use fairflight_stats::Moments;
+use glam::DVec3;
+
+/// What was drawn so far of an image of one seed.
+#[derive(Clone, Debug)]
+pub(super) struct Canvas<C> {
+    pub seed: u64,
+    resolution: [u32; 2],
+    pub tiles: Vec<Tile<C>>,
+    pub cost: Spent,
+    /// Samples per pixel so far.
+    pub samples: u32,
+    /// The mean over pixels and channels of each pass.
+    pub pass_means: Vec<f64>,
+    /// What is not drawn pixel by pixel.
+    pub photons: Option<PhotonLayer<C>>,
+    /// What is to be said of the walks.
+    pub warning: Option<String>,
+}
+
+/// An image with what it cost.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Drawn<C> {
+    /// Row by row from the top.
+    pub pixels: Vec<Pixel<C>>,
+    pub cost: Spent,
+    /// Per pixel.
+    pub samples: u32,
+    pub mean_variance: MeanVariance,
+    /// What is to be said of the walks.
+    pub warning: Option<String>,
+}
+
+/// Where the variance of the image's mean is to be taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum MeanVariance {
+    /// From the pixels, which share no randomness but for what adds this; `None` if that is not known.
+    OfPixels { shared: Option<f64> },
+    /// This, from the means of passes: all pixels of a pass share its batch. `None` for fewer than two passes.
+    OfPasses(Option<f64>),
+}
+
+/// What drawing cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Spent {
+    /// Look-ups of the medium.
+    pub lookups: u64,
+    /// CPU seconds over all threads, without the start of them.
+    pub cpu_seconds: f64,
+    /// Walks that were cut at their greatest number of collisions.
+    pub truncated: u64,
+    /// Virtual point lights, of all passes.
+    pub vpls: u64,
+    /// CPU seconds of their light paths, a part of all.
+    pub light_path_seconds: f64,
+    /// Compensation vertices that were tried.
+    pub compensation_tried: u64,
+    /// Those that lay where something was lost.
+    pub compensation_inside: u64,
+}
+
+impl<C: Spectrum> Canvas<C> {
+    /// No sample yet.
+    pub(super) fn new(resolution: [u32; 2], seed: u64) -> Self {
+        Self {
+            seed,
+            resolution,
+            tiles: Tile::all(resolution, seed),
+            cost: Spent::default(),
+            samples: 0,
+            pass_means: Vec::new(),
+            photons: None,
+            warning: None,
+        }
+    }
+
+    /// The image so far. `shares_batches` says that the pixels of a pass are not independent of each other.
+    pub(super) fn drawn(&self, shares_batches: bool) -> Drawn<C> {
+        let [columns, rows] = self.resolution.map(|side| side as usize);
+        let mut pixels = vec![Pixel::new(); columns * rows];
+        self.tiles.iter().for_each(|tile| tile.copy_to(&mut pixels, self.resolution[0]));
+        let mean_variance = if shares_batches {
+            MeanVariance::OfPasses(Moments::from_slice(&self.pass_means).variance_of_mean())
+        } else {
+            MeanVariance::OfPixels { shared: Some(0.0) }
+        };
+        let (cost, samples, warning) = (self.cost, self.samples, self.warning.clone());
+        let mut drawn = Drawn { pixels, cost, samples, mean_variance, warning };
+        if let Some(photons) = &self.photons {
+            photons.add_to(&mut drawn);
+        }
+        drawn
+    }
+}
+
+impl Drawn<DVec3> {
+    /// An image of three channels that were drawn one by one.
+    pub(super) fn of_channels([red, green, blue]: [Drawn<f64>; 3]) -> Self {
+        let pixels = red.pixels.iter().zip(&green.pixels).zip(&blue.pixels);
+        Self {
+            pixels: pixels.map(|((r, g), b)| Pixel::of_channels([*r, *g, *b])).collect(),
+            cost: red.cost.and(green.cost).and(blue.cost),
+            samples: red.samples,
+            mean_variance: MeanVariance::of_channels([&red, &green, &blue].map(|drawn| drawn.mean_variance)),
+            warning: red.warning.or(green.warning).or(blue.warning),
+        }
+    }
+}
+
+impl MeanVariance {
+    /// Of the mean of three independent channels that were drawn alike.
+    fn of_channels(channels: [Self; 3]) -> Self {
+        let known = channels.map(|(Self::OfPixels { shared: known } | Self::OfPasses(known))| known);
+        let sum = known.into_iter().sum::<Option<f64>>().map(|sum| sum / 9.0);
+        match channels[0] {
+            Self::OfPixels { .. } => Self::OfPixels { shared: sum },
+            Self::OfPasses(_) => Self::OfPasses(sum),
+        }
+    }
+}
+
+impl Spent {
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            lookups: self.lookups + other.lookups,
+            cpu_seconds: self.cpu_seconds + other.cpu_seconds,
+            truncated: self.truncated + other.truncated,
+            vpls: self.vpls + other.vpls,
+            light_path_seconds: self.light_path_seconds + other.light_path_seconds,
+            compensation_tried: self.compensation_tried + other.compensation_tried,
+            compensation_inside: self.compensation_inside + other.compensation_inside,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_that_share_tell_the_variance_of_the_mean() {
+        let mut canvas = Canvas::<f64>::new([2, 2], 1);
+        canvas.pass_means = vec![1.0];
+        assert_eq!(canvas.drawn(true).mean_variance, MeanVariance::OfPasses(None));
+        canvas.pass_means = vec![1.0, 2.0, 6.0];
+        // Sample variance 7 of three passes.
+        let MeanVariance::OfPasses(Some(variance)) = canvas.drawn(true).mean_variance else {
+            panic!("three passes have a variance")
+        };
+        assert!((variance - 7.0 / 3.0).abs() < 1e-15);
+        assert_eq!(canvas.drawn(false).mean_variance, MeanVariance::OfPixels { shared: Some(0.0) });
+    }
+
+    #[test]
+    fn channels_are_averaged() {
+        use MeanVariance::{OfPasses, OfPixels};
+        assert_eq!(
+            MeanVariance::of_channels([3.0, 6.0, 9.0].map(|v| OfPasses(Some(v)))),
+            OfPasses(Some(2.0))
+        );
+        let unknown = [Some(1.0), None, Some(1.0)].map(|shared| OfPixels { shared });
+        assert_eq!(MeanVariance::of_channels(unknown), OfPixels { shared: None });
+    }
+}

@@ -1,0 +1,118 @@
+//! The image of a plan, in as many channels as it has, pass by pass.
+
+use super::canvas::{Canvas, Drawn};
+use super::draw::{AddPass, Draw};
+use super::statistics::Moments;
+use crate::Failure;
+use crate::plan::{IntegratorPlan, Radiant, ScenePlan, Spectra};
+use fairflight_scene::Spectrum;
+use fairflight_sources::derive_seed;
+use glam::DVec3;
+
+/// An image that is being drawn on the threads of the current pool.
+#[derive(Debug)]
+pub(crate) struct Painting<'p> {
+    plan: &'p ScenePlan,
+    canvases: Canvases<'p>,
+    samples: u32,
+}
+
+#[derive(Debug)]
+enum Canvases<'p> {
+    Gray(&'p Radiant<f64>, Canvas<f64>),
+    Colour(&'p Radiant<DVec3>, Canvas<DVec3>),
+    Separate(Box<[(&'p Radiant<f64>, Canvas<f64>); 3]>),
+}
+
+impl<'p> Painting<'p> {
+    /// No sample yet.
+    pub(crate) fn new(plan: &'p ScenePlan) -> Self {
+        let (resolution, seed) = (plan.camera.resolution(), plan.seed);
+        let canvases = match &plan.spectra {
+            Spectra::Gray(radiant) => Canvases::Gray(radiant, Canvas::new(resolution, seed)),
+            Spectra::Colour(radiant) => Canvases::Colour(radiant, Canvas::new(resolution, seed)),
+            Spectra::Separate(channels) => Canvases::Separate(Box::new([0, 1, 2].map(|k| {
+                // Streams of their own, so that the noise of the channels is independent.
+                (&channels[k], Canvas::new(resolution, derive_seed(seed, k as u64)))
+            }))),
+        };
+        Self { plan, canvases, samples: 0 }
+    }
+
+    /// Whether all samples of the plan are drawn.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.samples >= self.plan.samples_per_pixel
+    }
+
+    /// Adds a pass of one sample per pixel. `advance` is told how many samples were added.
+    ///
+    /// # Errors
+    /// If a look-up is not lawful, or a sample not finite. The painting is then of no use.
+    pub(crate) fn add_pass(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
+        self.add(1, advance)
+    }
+
+    /// Adds all samples that are missing: in one pass, unless the integrator has a batch for each.
+    ///
+    /// # Errors
+    /// Those of [`add_pass`](Self::add_pass).
+    pub(crate) fn complete(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
+        let batches = self.plan.integrator.draws_in_batches();
+        while !self.is_complete() {
+            self.add(if batches { 1 } else { self.plan.samples_per_pixel - self.samples }, advance)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, samples: u32, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
+        let plan = self.plan;
+        debug_assert!(
+            samples == plan.samples_per_pixel || !matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)),
+            "photons come in replicas of the whole image"
+        );
+        match &mut self.canvases {
+            Canvases::Gray(radiant, canvas) => add(plan, radiant, canvas, samples, advance),
+            Canvases::Colour(radiant, canvas) => add(plan, radiant, canvas, samples, advance),
+            Canvases::Separate(channels) => {
+                channels.iter_mut().zip(["red", "green", "blue"]).try_for_each(|((radiant, canvas), name)| {
+                    add(plan, radiant, canvas, samples, advance).map_err(|failure| failure.within(name))
+                })
+            }
+        }?;
+        self.samples += samples;
+        Ok(())
+    }
+
+    /// What was drawn so far.
+    pub(crate) fn moments(&self) -> Moments {
+        let batches = self.plan.integrator.draws_in_batches();
+        match &self.canvases {
+            Canvases::Gray(_, canvas) => canvas.drawn(batches).into(),
+            Canvases::Colour(_, canvas) => canvas.drawn(batches).into(),
+            Canvases::Separate(channels) => {
+                Drawn::of_channels([0, 1, 2].map(|k| channels[k].1.drawn(batches))).into()
+            }
+        }
+    }
+}
+
+fn add<C: Spectrum>(
+    plan: &ScenePlan,
+    radiant: &Radiant<C>,
+    canvas: &mut Canvas<C>,
+    samples: u32,
+    advance: &(dyn Fn(u64) + Sync),
+) -> Result<(), Failure> {
+    let draw = Draw { plan, radiant, seed: canvas.seed, advance };
+    plan.medium.with(AddPass { draw, canvas, samples })
+}
+
+/// Draws the image of a plan on the threads of the current pool. `advance` is told how many samples were added.
+///
+/// # Errors
+/// If a look-up is not lawful, or a sample not finite.
+pub(crate) fn moments(plan: &ScenePlan, advance: &(dyn Fn(u64) + Sync)) -> Result<Moments, Failure> {
+    let mut painting = Painting::new(plan);
+    painting.complete(advance)?;
+    Ok(painting.moments())
+}

@@ -1,0 +1,151 @@
+//! A set of virtual point lights for each pass.
+
+use super::canvas::Spent;
+use super::draw::Draw;
+use crate::Failure;
+use crate::plan::VplPlan;
+use cpu_time::ThreadTime;
+use fairflight_media::Medium;
+use fairflight_paths::transport::World;
+use fairflight_scene::{Geometry, NoSurfaces, Spectrum};
+use fairflight_sources::{Seeded, derive_seed};
+use fairflight_vpl::{Emitters, KeepNear, Ledger, LightPaths, Vpl};
+use rayon::prelude::*;
+
+/// What all tiles of a pass share.
+#[derive(Clone, Debug)]
+pub(super) struct Batch<C> {
+    /// None for an integrator that does not gather.
+    pub vpls: Vec<Vpl<C>>,
+    /// The bound of their geometric term \[1/length²\].
+    pub bound: f64,
+}
+
+impl<C> Batch<C> {
+    /// Nothing is shared.
+    pub(super) fn none() -> Self {
+        Self { vpls: Vec::new(), bound: f64::INFINITY }
+    }
+}
+
+/// The streams of sets are children of this child of the seed: no pixel has its number.
+const LIGHT_STREAM: u64 = u64::MAX - 2;
+/// Of the paths that are traced to find out why a set is empty.
+const TRIAL_STREAM: u64 = u64::MAX - 3;
+/// So many paths share a stream, and a worker.
+const CHUNK: u32 = 256;
+/// So few paths that deposit nothing prove nothing.
+const LEAST_TRIAL: u32 = 4096;
+
+struct Traced<C> {
+    vpls: Vec<Vpl<C>>,
+    ledger: Ledger<C>,
+    spent: Spent,
+}
+
+impl<C: Spectrum> Draw<'_, C> {
+    /// The virtual point lights of pass number `pass`, and what they cost.
+    ///
+    /// # Errors
+    /// If a look-up is not lawful, or nothing that could be gathered is ever deposited.
+    pub(super) fn virtual_lights<M: Medium + Sync>(
+        &self,
+        medium: &M,
+        plan: &VplPlan,
+        pass: usize,
+    ) -> Result<(Batch<C>, Spent), Failure> {
+        let surfaces = &self.radiant.surfaces;
+        if surfaces.surfaces().is_empty() {
+            self.among(&NoSurfaces, medium, plan, pass)
+        } else {
+            self.among(surfaces, medium, plan, pass)
+        }
+    }
+
+    fn among<G: Geometry<C> + Sync, M: Medium + Sync>(
+        &self,
+        surfaces: &G,
+        medium: &M,
+        plan: &VplPlan,
+        pass: usize,
+    ) -> Result<(Batch<C>, Spent), Failure> {
+        let volume = self.volume(medium);
+        let world = World { volume: &volume, surfaces, lights: &self.radiant.lights };
+        let observer = self.plan.camera.origin();
+        let emitters = Emitters::new(&self.radiant.lights, surfaces, world.enclosing_ball(), observer);
+        let bound = plan.bound(self.radiant, &self.plan.phase, emitters.power().max_channel())?;
+        let is_dark = emitters.power().max_channel() <= 0.0;
+        let trace = |stream: u64, paths: u32, share: f64| {
+            self.light_paths(
+                surfaces,
+                medium,
+                plan,
+                &emitters,
+                (derive_seed(stream, pass as u64), paths, share),
+            )
+        };
+        let paths = plan.light_paths;
+        let set = trace(derive_seed(self.seed, LIGHT_STREAM), paths, 1.0 / f64::from(paths))?;
+        if set.vpls.is_empty() && pass == 0 && !is_dark {
+            let trial = paths.max(LEAST_TRIAL);
+            let trial = trace(derive_seed(self.seed, TRIAL_STREAM), trial, 1.0 / f64::from(trial))?;
+            if trial.vpls.is_empty() {
+                return Err(none_deposited(&trial.ledger));
+            }
+        }
+        let vpls = set.vpls;
+        let spent = Spent { vpls: vpls.len() as u64, ..set.spent };
+        Ok((Batch { vpls, bound }, spent))
+    }
+
+    /// Traces light paths in chunks with streams of their own, put together in order.
+    fn light_paths<G: Geometry<C> + Sync, M: Medium + Sync>(
+        &self,
+        surfaces: &G,
+        medium: &M,
+        plan: &VplPlan,
+        emitters: &Emitters<C>,
+        (stream, paths, share): (u64, u32, f64),
+    ) -> Result<Traced<C>, Failure> {
+        let keep_near = plan.keep_near.map(|radius| KeepNear { point: self.plan.camera.origin(), radius });
+        let chunk = |index: u32| {
+            let clock = ThreadTime::now();
+            let volume = self.volume(medium);
+            let world = World { volume: &volume, surfaces, lights: &self.radiant.lights };
+            let tracer = LightPaths::new(world, emitters, plan.transport.walk.walk()).keeping_near(keep_near);
+            let mut source = Seeded::for_batch(stream, u64::from(index));
+            let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());
+            for _ in index * CHUNK..((index + 1) * CHUNK).min(paths) {
+                tracer.trace(share, &mut ledger, &mut source, |vpl| vpls.push(vpl));
+            }
+            self.judge(&volume.medium)?;
+            let cpu_seconds = clock.elapsed().as_secs_f64();
+            let spent = Spent {
+                lookups: volume.medium.lookups(),
+                cpu_seconds,
+                light_path_seconds: cpu_seconds,
+                truncated: ledger.truncated,
+                ..Spent::default()
+            };
+            Ok(Traced { vpls, ledger, spent })
+        };
+        let chunks: Vec<Result<Traced<C>, Failure>> =
+            (0..paths.div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
+        let nothing = Traced { vpls: Vec::new(), ledger: Ledger::empty(), spent: Spent::default() };
+        chunks.into_iter().try_fold(nothing, |mut all, chunk| {
+            let mut chunk = chunk?;
+            all.vpls.append(&mut chunk.vpls);
+            let (ledger, spent) = (all.ledger.and(&chunk.ledger), all.spent.and(chunk.spent));
+            Ok(Traced { vpls: all.vpls, ledger, spent })
+        })
+    }
+}
+
+fn none_deposited<C: Spectrum>(ledger: &Ledger<C>) -> Failure {
+    let escaped = 100.0 * ledger.escaped.mean() / ledger.emitted.mean();
+    Failure::refused(format!(
+        "integrator.light_paths: none of {} light paths left a virtual point light: {escaped:.1} % of the power left the scene \
+         and the rest was absorbed, but nothing was scattered by a diffuse surface or a medium; path_tracer needs none",
+        ledger.paths
+    ))
+}

@@ -1,0 +1,74 @@
+//! What a reader of an image should know.
+
+use super::passes::End;
+use super::statistics::Moments;
+use crate::plan::{IntegratorPlan, ScenePlan};
+use crate::spec::{ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, SceneSpec, SurfaceSpec};
+
+/// What is to be said; without an `end`, of an image that is still being drawn.
+pub(super) fn warnings(
+    spec: &SceneSpec,
+    plan: &ScenePlan,
+    moments: &Moments,
+    end: Option<End>,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let (drawn, asked) = (moments.samples(), spec.samples_per_pixel);
+    warnings.extend(match end {
+        Some(end) => end.warning(drawn, asked),
+        None => Some(format!("the image is not finished: {drawn} of {asked} samples per pixel so far")),
+    });
+    warnings.extend(moments.warning());
+    if let Some(walk) = spec.integrator.walk()
+        && moments.truncated() > 0
+    {
+        let limit = match &spec.integrator {
+            IntegratorSpec::PathTracer(tracer) => format!("max_vertices = {} or ", tracer.max_vertices),
+            IntegratorSpec::Vpl(_) => "too many vertices or ".to_owned(),
+            _ => String::new(),
+        };
+        warnings.push(format!(
+            "{} walks were cut by {limit}max_collisions = {}: what they had left is missing, a bias",
+            moments.truncated(),
+            walk.max_collisions
+        ));
+    }
+    warnings.extend(spec.integrator.biased_baseline().map(|what| format!("integrator: {what}")));
+    let inside = |light: &LightSpec| matches!(light, LightSpec::Point { position, .. } if plan.bounds.contains(*position));
+    let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
+    if photons && spec.medium.is_some() && plan.bounds.contains(plan.camera.origin()) {
+        warnings.push(
+            "the camera stands in the medium: the connection of photons with it has no second moment, errors are \
+             underrated"
+                .to_owned(),
+        );
+    }
+    if spec.integrator.walk().is_some() && !photons && spec.medium.is_some() && spec.lights.iter().any(inside)
+    {
+        warnings.push(
+            "a point light lies in the medium: the connection with it has no second moment, errors are underrated"
+                .to_owned(),
+        );
+    }
+    let connects = matches!(spec.integrator, IntegratorSpec::PathTracer(_));
+    let is_smooth = |surface: &SurfaceSpec| !matches!(surface.material, MaterialSpec::Diffuse { .. });
+    let no_extent =
+        |light: &LightSpec| matches!(light, LightSpec::Point { .. } | LightSpec::Directional { .. });
+    if connects && spec.surfaces.iter().any(is_smooth) && spec.lights.iter().any(no_extent) {
+        warnings.push(
+            "light of points and directions that smooth surfaces pass on is missing: no path from the camera meets it by \
+             chance"
+                .to_owned(),
+        );
+    }
+    let unbounded = matches!(&spec.integrator, IntegratorSpec::Vpl(vpl) if vpl.clamp == ClampSpec::Unclamped);
+    if unbounded && spec.medium.is_some() {
+        warnings.push(
+            "unbounded connections in a medium have no second moment: errors are underrated".to_owned(),
+        );
+    }
+    if spec.lights.is_empty() && !spec.surfaces.iter().any(SurfaceSpec::emits) {
+        warnings.push("there is no light, the image is black".to_owned());
+    }
+    warnings
+}
