@@ -43,6 +43,8 @@ pub struct Start<C> {
     pub segment: Segment,
     /// The power of all emitters, if this is the only light path.
     pub power: C,
+    /// Whether a direction may meet the emitter by chance; not one of a point or of a direction.
+    pub has_extent: bool,
 }
 
 impl<C: Spectrum> Emitters<C> {
@@ -100,7 +102,9 @@ impl<C: Spectrum> Emitters<C> {
                 let u = std::array::from_fn(|_| source.next_uniform());
                 let photon = lights.emit(light, self.ball, u)?;
                 let line = Line { origin: photon.origin, direction: photon.direction };
-                Start { segment: free(line), power: photon.power * (1.0 / pmf) }
+                // The background comes first.
+                let has_extent = light + lights.sources.len() < lights.emitters();
+                Start { segment: free(line), power: photon.power * (1.0 / pmf), has_extent }
             }
             Kind::Surface(surface, sides) => {
                 let [u, v, side, s, t] = std::array::from_fn(|_| source.next_uniform());
@@ -108,7 +112,8 @@ impl<C: Spectrum> Emitters<C> {
                 let inner = sides == Sides::Both && side < 0.5;
                 let normal = if inner { -point.normal } else { point.normal };
                 let line = Line { origin: point.position, direction: cosine_hemisphere(normal, s, t) };
-                Start { segment: Segment { from: Some(surface), ..free(line) }, power: power * (1.0 / pmf) }
+                let segment = Segment { from: Some(surface), ..free(line) };
+                Start { segment, power: power * (1.0 / pmf), has_extent: true }
             }
         })
     }
@@ -166,8 +171,16 @@ mod tests {
         let mut scene = vacuum(vec![], vec![]);
         scene.lights.background.constant = 0.25;
         scene.lights.background.maps.push(EnvironmentMap::new(2, 2, vec![0.75; 4]).unwrap());
-        // 4π · π 2², of radiance 1 in all.
-        assert!((emitters(&scene, FAR).power() - 16.0 * PI * PI).abs() < 1e-12);
+        scene.lights.sources.push(Source::point(DVec3::ZERO, 16.0 * PI * PI).unwrap());
+        // 4π · π 2², of radiance 1 in all, and a point as bright.
+        let emitters = emitters(&scene, FAR);
+        assert!((emitters.power() - 32.0 * PI * PI).abs() < 1e-12);
+        for (u, has_extent) in [(0.1, true), (0.4, true), (0.6, false)] {
+            let mut source = Scripted::new([u, 0.5, 0.5, 0.5, 0.5, 0.5]);
+            let start = emitters.sample(&scene.lights, &scene.surfaces, &mut source).unwrap();
+            assert_eq!(start.has_extent, has_extent);
+            assert!((start.power - 32.0 * PI * PI).abs() < 1e-12);
+        }
     }
 
     /// A point light of power 1, a lamp of 3 on both sides together, and one that is black.
@@ -192,7 +205,7 @@ mod tests {
             let light = start(&[u, 0.5, 0.25, 0.9, 0.9, 0.9]);
             assert_eq!(light.segment.line.origin, dvec3(0.0, 0.0, 5.0));
             assert!((light.segment.line.direction - DVec3::Y).length() < 1e-15);
-            assert_eq!((light.segment.from, light.segment.to), (None, None));
+            assert_eq!((light.segment.from, light.segment.to, light.has_extent), (None, None, false));
             assert!((light.power - 4.0).abs() < 1e-14);
         }
         for u in [0.250_001, 0.7, 1.0 - f64::EPSILON] {
@@ -201,6 +214,7 @@ mod tests {
                 assert_eq!(lamp.segment.line.origin, dvec3(0.0, -0.25, 1.0));
                 assert_eq!(lamp.segment.line.direction, normal);
                 assert_eq!((lamp.segment.from, lamp.segment.length), (Some(1), f64::INFINITY));
+                assert!(lamp.has_extent);
                 assert!((lamp.power - 4.0).abs() < 1e-14);
             }
         }

@@ -49,6 +49,7 @@ mod fixtures;
 mod gather;
 mod integrator;
 mod keep_near;
+mod ledger;
 mod light_paths;
 mod vpl;
 
@@ -57,5 +58,6 @@ pub use emission::{Emitters, Start};
 pub use gather::{Connected, Gather, Term};
 pub use integrator::{Component, Pairing, VplIntegrator};
 pub use keep_near::KeepNear;
-pub use light_paths::{Ledger, LightPaths};
+pub use ledger::Ledger;
+pub use light_paths::LightPaths;
 pub use vpl::Vpl;

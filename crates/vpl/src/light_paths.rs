@@ -1,6 +1,6 @@
 //! Light paths, whose vertices are virtual point lights (engelhardt-2013 section 3.2, raab-2008 section 4.2).
 
-use crate::{Emitters, KeepNear, Vpl};
+use crate::{Emitters, KeepNear, Ledger, Vpl};
 use fairflight_media::{Line, Medium, PhaseFunction};
 use fairflight_paths::transport::{Event, World};
 use fairflight_paths::{SamplingExtinction, Walk};
@@ -13,7 +13,7 @@ use fairflight_sources::UniformSource;
 /// start on an emitter, with its power
 /// repeat
 ///     fly to a collision or a surface                      (raab-2008 algorithm 1, or any other sampling extinction)
-///     at a smooth surface: go on behind it
+///     at a smooth surface: go on behind it, unless straight from a light without extent
 ///     else: leave a virtual point light with the power that is scattered
 ///     roulette with the share that is scattered
 ///     choose a direction by BRDF · cosine or phase function
@@ -22,6 +22,10 @@ use fairflight_sources::UniformSource;
 /// **Law.** With N paths, each light of power Φ/N, the sum over all virtual point lights of power · f(x) · g(x) has the expectation
 /// ∫ L_s(x → ·) g(x) dx: they are samples of the light that is scattered at x, whatever g. In particular the power that they absorb and
 /// the power that escapes are those of the emitters ([`Ledger`]).
+///
+/// **Lights without extent** are not seen behind smooth surfaces: no direction meets them by chance, no connection passes. Neither path tracing
+/// nor the light of emitters at a vertex has that light; were it in the virtual point lights, connections and their compensation would
+/// estimate different things.
 ///
 /// **Variance.** A sampling extinction below the extinction gives powers of either sign; subcriticality is that of the
 /// [`Walk`].
@@ -32,45 +36,6 @@ pub struct LightPaths<'s, G, M, P, C, R> {
     walk: Walk<R>,
     keep_near: Option<KeepNear>,
     max_vertices: u32,
-}
-
-/// Where the power of light paths went.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ledger<C> {
-    /// Light paths.
-    pub paths: u64,
-    /// What they started with.
-    pub emitted: C,
-    /// What left the scene.
-    pub escaped: C,
-    /// What virtual point lights scatter, before any of them is dropped for being far.
-    pub scattered: C,
-    /// What vertices absorbed, as far as it is scored there and not by chance: (1/ρ − 1) of what is scattered.
-    pub absorbed: C,
-    /// Paths that were cut at the greatest number of vertices: each is a bias.
-    pub truncated: u64,
-}
-
-impl<C: Spectrum> Ledger<C> {
-    /// Of no paths.
-    #[must_use]
-    pub fn empty() -> Self {
-        let zero = C::ZERO;
-        Self { paths: 0, emitted: zero, escaped: zero, scattered: zero, absorbed: zero, truncated: 0 }
-    }
-
-    /// Of these and other paths.
-    #[must_use]
-    pub fn and(self, other: &Self) -> Self {
-        Self {
-            paths: self.paths + other.paths,
-            emitted: self.emitted + other.emitted,
-            escaped: self.escaped + other.escaped,
-            scattered: self.scattered + other.scattered,
-            absorbed: self.absorbed + other.absorbed,
-            truncated: self.truncated + other.truncated,
-        }
-    }
 }
 
 /// Longer paths are cut, and counted: only a scene without absorption has them.
@@ -133,6 +98,10 @@ where
                         return;
                     };
                     if let Some(passage) = world.pass(&hit, incident, source) {
+                        if bounce == 0 && !start.has_extent {
+                            ledger.unseen += power;
+                            return;
+                        }
                         let line = Line { origin: hit.position, direction: passage.direction };
                         segment = Segment { line, length: f64::INFINITY, from: Some(hit.index), to: None };
                         continue;
@@ -281,30 +250,40 @@ mod tests {
         assert_eq!(ledger.escaped, vpls[1].power);
         assert_eq!(ledger.absorbed + ledger.escaped, ledger.emitted);
         assert_eq!(ledger.scattered, vpls[0].power + vpls[1].power);
-        let twice = ledger.and(&ledger);
-        assert_eq!(
-            (twice.paths, twice.emitted, twice.escaped),
-            (2, 2.0 * ledger.emitted, 2.0 * ledger.escaped)
-        );
-        assert_eq!(ledger.and(&Ledger::empty()), ledger);
     }
 
     #[test]
     fn smooth_surfaces_are_passed_with_all_power() {
-        let ceiling = square(2.0, 9.0, diffuse(0.5), 0.0);
-        let scene = vacuum(vec![square(0.0, 5.0, Material::Mirror, 0.0), ceiling], light(1.0));
-        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.75, &[0.5]));
+        // A lamp of area 4 that shines up with the power 8 on both sides, onto a mirror and back up from the ceiling's other side.
+        let lamp = || square(0.0, 1.0, diffuse(0.0), 1.0 / std::f64::consts::PI);
+        let ceiling = || square(-2.0, 9.0, diffuse(0.5), 0.0);
+        let pass = |material, sine_squared, rest: &[f64]| {
+            let from_lamp = [0.5, 0.0, 0.0, 0.9, sine_squared, 0.0];
+            let scene = vacuum(vec![lamp(), square(1.0, 5.0, material, 0.0), ceiling()], vec![]);
+            traced(&scene, |paths| paths, &[&from_lamp[..], rest].concat())
+        };
+        // At 60° to the normal: past the lamp, √3 beside its corner, and on to z = −2.
+        let (vpls, ledger) = pass(Material::Mirror, 0.75, &[0.5]);
         let [vpl] = vpls[..] else { panic!("{vpls:?}") };
-        assert!((vpl.vertex.position - dvec3(27f64.sqrt(), 0.0, 2.0)).length() < 1e-14);
-        assert_eq!((vpl.bounce, vpl.power, ledger.emitted), (1, 1.0, CARRIED));
+        let aside = (vpl.vertex.position - dvec3(-1.0, -1.0, -2.0)).length();
+        assert!((aside - 4.0 * 3f64.sqrt()).abs() < 1e-14, "{aside}");
+        assert!((vpl.power - 0.5 * CARRIED).abs() < 1e-14 && vpl.bounce == 1);
+        assert!((ledger.emitted - CARRIED).abs() < 1e-14 && ledger.unseen == 0.0);
         // Refraction compresses radiance, not power.
-        let glass = Material::Dielectric { ior: 1.5 };
-        let scene =
-            vacuum(vec![square(0.0, 5.0, glass, 0.0), square(-2.0, 9.0, diffuse(0.5), 0.0)], light(1.0));
-        let (vpls, _) = traced(&scene, |paths| paths, &script(0.75, &[0.9, 0.5]));
-        assert_eq!((vpls[0].bounce, vpls[0].power), (1, 1.0));
-        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.75, &[0.001]));
-        assert_eq!((vpls.len(), ledger.escaped), (0, CARRIED));
+        let (vpls, ledger) = pass(Material::Dielectric { ior: 1.5 }, 0.2, &[0.9]);
+        assert!(vpls.is_empty() && (ledger.escaped - CARRIED).abs() < 1e-14);
+    }
+
+    #[test]
+    fn light_of_a_point_does_not_pass_smooth_surfaces_unscattered() {
+        let surfaces = vec![square(0.0, 9.0, Material::Mirror, 0.0), square(2.0, 9.0, diffuse(0.5), 0.0)];
+        let scene = vacuum(surfaces, light(1.0));
+        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.75, &[]));
+        assert_eq!((vpls.len(), ledger.unseen, ledger.emitted), (0, CARRIED, CARRIED));
+        // Once scattered it is like any other: up to the ceiling, down to the mirror, up again.
+        let (vpls, ledger) = traced(&scene, |paths| paths, &script(0.25, &[0.49, 0.0, 0.0, 0.5]));
+        assert_eq!((vpls.len(), ledger.unseen), (2, 0.0));
+        assert_eq!((vpls[1].bounce, vpls[1].vertex.surface()), (2, Some(1)));
     }
 
     #[test]
