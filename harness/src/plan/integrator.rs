@@ -188,6 +188,14 @@ impl IntegratorPlan {
         C: Spectrum,
         J: IntegratorJob<C>,
     {
+        if M::IS_EMPTY {
+            // Only integrators that know surfaces have anything to do: all others see the background.
+            return Ok(match self {
+                Self::PathTracer(plan) => plan.by_closed_form(volume, stage, unlawful, job),
+                Self::Vpl(plan) => plan.by_closed_form(volume, stage, unlawful, job),
+                _ => job.run(Attenuation::new(volume, stage.lights, Regular)),
+            });
+        }
         match self {
             Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, stage.lights, Regular))),
             Self::SingleScattering(plan) => plan.by_closed_form(volume, stage.lights, unlawful, job),

@@ -239,7 +239,10 @@ pub(super) trait AmongSurfaces {
         J: IntegratorJob<C>,
     {
         let Stage { lights, surfaces, .. } = stage;
-        if Geometry::surfaces(surfaces).is_empty() {
+        if M::IS_EMPTY {
+            // A scene with neither is a rare one, and needs no code of its own.
+            self.run(World { volume, surfaces, lights }, stage, shadow, job)
+        } else if Geometry::surfaces(surfaces).is_empty() {
             self.run(World { volume, surfaces: &NoSurfaces, lights }, stage, shadow, job)
         } else {
             self.run(World { volume, surfaces, lights }, stage, shadow, job)

@@ -175,7 +175,10 @@ impl<C: Spectrum> AddPass<'_, C> {
         let [columns, rows] = draw.plan.camera.resolution().map(f64::from);
         canvas.pass_means.push(sum / (columns * rows * f64::from(samples)));
         canvas.samples += samples;
-        if let IntegratorPlan::PhotonTracer(walk) = integrator {
+        // In empty space nothing is scattered towards the camera.
+        if !M::IS_EMPTY
+            && let IntegratorPlan::PhotonTracer(walk) = integrator
+        {
             canvas.photons = Some(draw.photons(medium, walk)?);
         }
         Ok(())
@@ -194,7 +197,7 @@ impl<C: Spectrum> Draw<'_, C> {
 
     /// Whether the walks of the integrator have a second moment. Its look-ups are not part of the cost: it is a diagnosis.
     fn check_growth<M: Medium>(&self, medium: &M) -> Result<Option<String>, Failure> {
-        let Some(walk) = self.plan.integrator.walk() else { return Ok(None) };
+        let Some(walk) = self.plan.integrator.walk().filter(|_| !M::IS_EMPTY) else { return Ok(None) };
         let volume = self.volume(medium);
         let growth = walk.check_growth(&volume, self.seed);
         // Where walks are not defined they do not grow either.

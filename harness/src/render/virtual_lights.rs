@@ -55,7 +55,9 @@ impl<C: Spectrum> Draw<'_, C> {
         pass: usize,
     ) -> Result<(Batch<C>, Spent), Failure> {
         let surfaces = &self.radiant.surfaces;
-        if surfaces.surfaces().is_empty() {
+        if M::IS_EMPTY {
+            self.among(surfaces, medium, plan, pass)
+        } else if surfaces.surfaces().is_empty() {
             self.among(&NoSurfaces, medium, plan, pass)
         } else {
             self.among(surfaces, medium, plan, pass)

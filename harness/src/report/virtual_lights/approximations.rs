@@ -112,7 +112,10 @@ fn compare(
     let shown = Picture {
         id: format!("{id}-difference"),
         label: "difference".to_owned(),
-        lines: vec![format!("blocks of {BLOCK} x {BLOCK} pixels"), format!("made {:.0} times brighter", scale)],
+        lines: vec![
+            format!("blocks of {BLOCK} x {BLOCK} pixels"),
+            format!("made {:.0} times brighter", scale),
+        ],
         resolution: [side, side],
         pixels: Pixels::Signed {
             values: blocks.iter().map(|(difference, _)| *difference).collect(),

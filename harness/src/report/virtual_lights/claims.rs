@@ -54,7 +54,12 @@ pub(super) fn e1(clamping: &Clamping) -> Claim {
         ("E1", "engelhardt-2013 4.1, fig. 4, 11"),
         "Clamping loses much energy; one compensation step recovers most, two are almost indistinguishable from the full one",
         words.join("; "),
-        (verdict, format!("Room with smoke, b = {BOUND}: one step brings back {recovered:.0} % of what clamping loses. How much is lost is a matter of b.")),
+        (
+            verdict,
+            format!(
+                "Room with smoke, b = {BOUND}: one step brings back {recovered:.0} % of what clamping loses. How much is lost is a matter of b."
+            ),
+        ),
     )
 }
 
@@ -81,7 +86,9 @@ pub(super) fn e2(strategies: &Strategies) -> Claim {
                 (true, true) => (ClaimVerdict::Holds, comment),
                 (true, false) => (
                     ClaimVerdict::HoldsUnder,
-                    format!("{comment} 1-to-1 is below both others; N-to-1 cannot be told to be below 1-to-N, whose one vertex sees all lights."),
+                    format!(
+                        "{comment} 1-to-1 is below both others; N-to-1 cannot be told to be below 1-to-N, whose one vertex sees all lights."
+                    ),
                 ),
                 _ => (ClaimVerdict::DoesNotHold, comment),
             }
@@ -98,7 +105,8 @@ pub(super) fn e2(strategies: &Strategies) -> Claim {
 
 /// E3. Criterion: between 40 and 60 % are lost at every bound.
 pub(super) fn e3(approximations: &Approximations) -> Claim {
-    let lost: Vec<(f64, f64)> = approximations.inside.iter().map(|(bound, share)| (*bound, 1.0 - share)).collect();
+    let lost: Vec<(f64, f64)> =
+        approximations.inside.iter().map(|(bound, share)| (*bound, 1.0 - share)).collect();
     let half = |(_, lost): &&(f64, f64)| (0.4..=0.6).contains(lost);
     let verdict = match lost.iter().filter(half).count() {
         n if n == lost.len() => ClaimVerdict::Holds,
@@ -185,7 +193,9 @@ pub(super) fn e6(anisotropy: &Anisotropy) -> Claim {
     let words: Vec<String> = anisotropy
         .points
         .iter()
-        .map(|point| format!("g = {}: {} of the mean radiance (z {:.1})", point.g, point.error.words(3), point.z))
+        .map(|point| {
+            format!("g = {}: {} of the mean radiance (z {:.1})", point.g, point.error.words(3), point.z)
+        })
         .collect();
     let (verdict, comment) = match (works, more(-0.8), more(0.8)) {
         (true, true, true) => (ClaimVerdict::Holds, "Both directions need more lights for the same error."),
@@ -250,7 +260,10 @@ pub(super) fn summary(
     let mut summary = Vec::new();
     for name in ["1-to-1", "1-to-1, locally homogeneous"] {
         if let Some(ratio) = strategies.ratio(name, "1-to-N") {
-            summary.push(format!("At equal time {name} has {} of the RMSE of 1-to-N in the room with smoke.", ratio.words(2)));
+            summary.push(format!(
+                "At equal time {name} has {} of the RMSE of 1-to-N in the room with smoke.",
+                ratio.words(2)
+            ));
         }
     }
     if let Some(ratio) = strategies.ratio("1-to-1", "path tracing") {

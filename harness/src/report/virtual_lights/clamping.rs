@@ -94,7 +94,9 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
         &reference.shown,
         exposure,
     )];
-    for (id, name, clamp) in [("unbounded", "unbounded lights", Value::Null), ("clamped", "clamped", json!(BOUND))] {
+    for (id, name, clamp) in
+        [("unbounded", "unbounded lights", Value::Null), ("clamped", "clamped", json!(BOUND))]
+    {
         let one_set = subject.with("integrator", lights(PATHS, 32, &clamp));
         let images = one_set.measure(1, (run.seed(21, u64::from(id == "clamped")), 2), &run.media)?;
         let lines = vec![format!("{:.0} % of the light", 100.0 * energy(&images))];
@@ -156,7 +158,8 @@ fn energy(run: &Run<'_>) -> Result<(Vec<Stage>, Section), Failure> {
             Cell::Number(stage.z),
         ]);
     }
-    let mut section = Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke");
+    let mut section =
+        Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke");
     section.text = vec![format!(
         "48 x 48 pixels in gray, {} sets of {PATHS} light paths per image, b = {BOUND}, four points per eye ray, {REPLICAS} independent images. \
          In the differences green is light that is missing, red light that is too much, as in the paper; noise is both.",

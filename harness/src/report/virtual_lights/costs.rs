@@ -62,8 +62,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Costs, Failure> {
     };
     let (clamped, paths) = seconds(lights(PATHS, 1, &json!(BOUND)), 0)?;
     let paper = Choice { strategy: "many_to_one", ..Choice::PAPER };
-    let (ignored, _) =
-        seconds(Choice { visibility: "ignored", ..paper }.lights(PATHS, 1, BOUND), 1)?;
+    let (ignored, _) = seconds(Choice { visibility: "ignored", ..paper }.lights(PATHS, 1, BOUND), 1)?;
     let (full, _) = seconds(paper.lights(PATHS, 1, BOUND), 2)?;
     let share = |with: &Measured| clamped.over(with).map(|rest| 1.0 - rest);
     let (share_ignored, share_full) = (share(&ignored), share(&full));
@@ -123,14 +122,15 @@ impl<M: Medium> RayTransmittance<M> for Clear {
 
 /// The parts of a connection in the room with smoke.
 fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
-    let plan = scenes::smoke_room(32)?
-        .with("integrator", lights(PATHS, 1, &json!(BOUND)))
-        .plan(1, run.seed(81, 0), &run.media)?;
+    let plan = scenes::smoke_room(32)?.with("integrator", lights(PATHS, 1, &json!(BOUND))).plan(
+        1,
+        run.seed(81, 0),
+        &run.media,
+    )?;
     let (AnyMedium::Perlin(medium), Spectra::Gray(radiant)) = (&plan.medium, &plan.spectra) else {
         return Err(Failure::refused("the room of the report is gray and full of noise"));
     };
-    let volume =
-        Volume { medium: &**medium, bounds: plan.bounds, albedo: radiant.albedo, phase: Isotropic };
+    let volume = Volume { medium: &**medium, bounds: plan.bounds, albedo: radiant.albedo, phase: Isotropic };
     let world = World { volume: &volume, surfaces: &radiant.surfaces, lights: &radiant.lights };
     let sampling = Uniform::new(medium.upper_bound().unwrap_or(1.0)).map_err(Failure::refused)?;
     let walk = Walk::new(Version::NonTerminating, sampling);
@@ -156,7 +156,8 @@ fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
         segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
         match world.follow(&walk, &collisions, &segment, &mut source) {
             Event::Scattered { vertex, .. } => points.push(vertex),
-            _ => points.extend(hit.as_ref().and_then(|hit| world.diffuse_vertex(hit)).map(|(vertex, _)| vertex)),
+            _ => points
+                .extend(hit.as_ref().and_then(|hit| world.diffuse_vertex(hit)).map(|(vertex, _)| vertex)),
         }
     }
     let empty = World { volume: &volume, surfaces: &NoSurfaces, lights: &radiant.lights };

@@ -20,8 +20,11 @@ const EXPOSURE: f64 = 0.9;
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
     let clock = Instant::now();
-    let steps =
-        strategies::steps() + clamping::steps() + approximations::steps() + costs::steps() + anisotropy::steps();
+    let steps = strategies::steps()
+        + clamping::steps()
+        + approximations::steps()
+        + costs::steps()
+        + anisotropy::steps();
     let run = Run::new(options, environment, steps);
     let clamping = clamping::study(&run)?;
     let strategies = strategies::study(&run)?;

@@ -15,8 +15,8 @@ const LIT_CLOUD: &str = include_str!("../../../scenes/lit-cloud.json");
 pub(super) const BOUND: f64 = 20.0;
 
 fn gray(text: &str, resolution: [u32; 2]) -> Result<Subject, Failure> {
-    let mut scene: Value =
-        serde_json::from_str(text).map_err(|error| Failure::refused(format!("a scene of the report: {error}")))?;
+    let mut scene: Value = serde_json::from_str(text)
+        .map_err(|error| Failure::refused(format!("a scene of the report: {error}")))?;
     for surface in scene["surfaces"].as_array_mut().into_iter().flatten() {
         let reflectance = &mut surface["material"]["reflectance"];
         if let Some(rgb) = reflectance.as_array() {
