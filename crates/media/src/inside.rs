@@ -54,6 +54,7 @@ impl Bounds {
     }
 
     /// Whether a point lies in the bounds, their surface included.
+    #[inline]
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
         match *self {

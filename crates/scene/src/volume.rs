@@ -1,7 +1,7 @@
 //! The scattering medium of a scene.
 
 use crate::{Connection, Spectrum};
-use fairflight_media::{Bounds, Line, Medium, Ray};
+use fairflight_media::{Bounds, Clip, Line, Medium, Ray};
 use glam::DVec3;
 
 /// A medium in its bounds, with how much and whereto it scatters. Outside the bounds is vacuum.
@@ -26,6 +26,16 @@ impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
         // Known at compile time: a scene without a medium has no code for one.
         if M::IS_EMPTY {
             return None;
+        }
+        if self.bounds.contains(line.origin) {
+            // Bounds are convex: where both ends are inside, so is all between them.
+            let ends_inside = length.filter(|&length| self.bounds.contains(line.at(length)));
+            let length = ends_inside.unwrap_or_else(|| {
+                let exit = self.bounds.exit_distance(line.origin, line.direction);
+                length.map_or(exit, |length| length.min(exit))
+            });
+            let clip = Clip { line: *line, entry_distance: 0.0, length };
+            return (length > 0.0).then(|| Ray::new(&self.medium, &clip));
         }
         if self.bounds.certainly_misses(line.origin, line.direction) {
             return None;

@@ -144,10 +144,13 @@ impl<C: Spectrum> Draw<'_, C> {
 }
 
 fn none_deposited<C: Spectrum>(ledger: &Ledger<C>) -> Failure {
-    let escaped = 100.0 * ledger.escaped.mean() / ledger.emitted.mean();
+    let share = |power: C| 100.0 * power.mean() / ledger.emitted.mean();
     Failure::refused(format!(
-        "integrator.light_paths: none of {} light paths left a virtual point light: {escaped:.1} % of the power left the scene \
-         and the rest was absorbed, but nothing was scattered by a diffuse surface or a medium; path_tracer needs none",
-        ledger.paths
+        "integrator.light_paths: none of {} light paths left a virtual point light: {:.1} % of the power left the scene, {:.1} % is \
+         that of points or directions behind smooth surfaces, the rest was absorbed; nothing was scattered by a diffuse surface or a \
+         medium. path_tracer needs no virtual point lights",
+        ledger.paths,
+        share(ledger.escaped),
+        share(ledger.unseen)
     ))
 }

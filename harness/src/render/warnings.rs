@@ -50,14 +50,14 @@ pub(super) fn warnings(
                 .to_owned(),
         );
     }
-    let connects = matches!(spec.integrator, IntegratorSpec::PathTracer(_));
+    let connects = matches!(spec.integrator, IntegratorSpec::PathTracer(_) | IntegratorSpec::Vpl(_));
     let is_smooth = |surface: &SurfaceSpec| !matches!(surface.material, MaterialSpec::Diffuse { .. });
     let no_extent =
         |light: &LightSpec| matches!(light, LightSpec::Point { .. } | LightSpec::Directional { .. });
     if connects && spec.surfaces.iter().any(is_smooth) && spec.lights.iter().any(no_extent) {
         warnings.push(
-            "light of points and directions that smooth surfaces pass on is missing: no path from the camera meets it by \
-             chance"
+            "light of points and directions that smooth surfaces pass on is missing: no path from the camera meets it by chance, \
+             and virtual point lights leave it out alike"
                 .to_owned(),
         );
     }
