@@ -102,7 +102,18 @@ fn by_lights(room: &Room, bound: f64, options: Option<CompensationOptions>, seed
     let correction = Compensation::new(options, &mean);
     let pairing = correction.pairing();
     let mut integrator = VplIntegrator::new(gather, (4, pairing), correction);
-    (0..RAYS).map(|_| integrator.radiance(&eye(), &mut source)).sum::<f64>() / f64::from(RAYS)
+    let mut sum = 0.0;
+    let allocated = allocation_counter::measure(|| {
+        sum = (0..RAYS).map(|_| integrator.radiance(&eye(), &mut source)).sum::<f64>();
+    });
+    assert_eq!(allocated.count_total, 0, "a ray, its connections and its compensation allocate nothing");
+    sum / f64::from(RAYS)
+}
+
+#[test]
+fn the_counter_of_allocations_counts() {
+    let allocated = allocation_counter::measure(|| drop(std::hint::black_box(vec![1])));
+    assert_eq!(allocated.count_total, 1);
 }
 
 #[test]

@@ -10,3 +10,4 @@ mod render;
 mod render_refusals;
 mod report;
 mod surfaces;
+mod virtual_lights;

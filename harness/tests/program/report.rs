@@ -90,6 +90,16 @@ fn the_report_on_particle_tracing_has_its_sections() {
 }
 
 #[test]
+fn the_report_on_virtual_point_lights_keeps_the_expectation() {
+    let (results, ledger) = document("vpl", "2");
+    assert_eq!(
+        ledger.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(),
+        ["E1", "E2", "E3", "E4", "E5", "E6", "R4"]
+    );
+    assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
+}
+
+#[test]
 fn what_cannot_be_written_is_said_before_anything_is_measured() {
     let parent = tempfile::tempdir().expect("a temporary folder");
     let file = parent.path().join("file");
