@@ -35,6 +35,18 @@ integrators    transmittance     estimator
                                                             raab-2008 3.1
                single_scattering sampling, estimator, samples_per_ray, [heuristic], [shadow], [shared_explorers], [starts]
                                                             szirmay-kalos-2017 4.3
+               path_tracer       [heuristic], [max_vertices], [estimator], [version], [sigma_samp], [max_collisions],
+                                 [allow_supercritical]      raab-2008 4.1, among surfaces
+               vpl               light_paths, clamp (b, null or \"scene\"), [eye_samples], [compensation], [component],
+                                 [keep_near], [local_mean_cells], and those of path_tracer but max_vertices
+                                                            raab-2008 4.2, engelhardt-2013, among surfaces
+compensation   strategy          one_to_many, many_to_one, one_to_one
+               [placement]       free_flight, locally_homogeneous
+               [transmittance]   exact, approximate
+               [steps]           a number, or null for unlimited
+               [visibility]      full, local, ignored
+component      all, connections, correction, lost
+heuristic      balance, power; path_tracer and vpl also maximum
 sampling       attenuation, attenuation_resampled, source, scattering, source_and_scattering, attenuation_and_source,
                attenuation_and_scattering
 phases         isotropic, rayleigh, hazy_mie
@@ -45,6 +57,11 @@ lights         environment       radiance
                environment_map   file
                point             position, power
                directional       direction, irradiance
+surfaces       rectangle         corner, edge_u, edge_v, material, [emission]
+               sphere            center, radius, material, [emission]
+material       diffuse           reflectance
+               mirror
+               dielectric        ior
 ";
 
 pub(crate) fn run(stdout: &mut dyn Write) -> Result<i32, Failure> {
