@@ -3,10 +3,10 @@
 use crate::{NotFinite, Run, measure};
 use fairflight_compensation::Compensation;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Homogeneous, Medium, PhaseFunction};
+use fairflight_media::{Homogeneous, Line, Medium, PhaseFunction};
 use fairflight_paths::transport::{Lobe, Vertex, World};
 use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
-use fairflight_scene::{Geometry, Lights, Segment, Source, Spectrum, Surfaces, Volume};
+use fairflight_scene::{Geometry, Lights, Material, Segment, Source, Spectrum, Surfaces, Volume};
 use fairflight_sources::UniformSource;
 use fairflight_stats::{Reference, Verdict, judge};
 use fairflight_vpl::{Connected, Correction, Gather, Pairing, Term, Vpl};
@@ -142,7 +142,7 @@ impl Local {
         sum * 2.0 * TAU / f64::from(cosines * turns)
     }
 
-    fn sigma_t(&self) -> f64 {
+    pub(crate) fn sigma_t(&self) -> f64 {
         self.volume.medium.sigma_t(DVec3::ZERO)
     }
 
@@ -155,10 +155,10 @@ impl Local {
 
     /// The nearest surface that y sees, as a vertex, and its reflectance.
     fn surface_behind(&self, direction: DVec3) -> Option<(f64, Vertex, f64)> {
-        let line = fairflight_media::Line { origin: self.y.position, direction };
+        let line = Line { origin: self.y.position, direction };
         let segment = Segment { line, length: f64::INFINITY, from: self.y.surface(), to: None };
         let hit = self.surfaces.intersect(&segment)?;
-        let fairflight_scene::Material::Diffuse { reflectance } = hit.surface.material else { return None };
+        let Material::Diffuse { reflectance } = hit.surface.material else { return None };
         let lobe = Lobe::Diffuse { normal: hit.normal, surface: hit.index };
         Some((hit.distance, Vertex { position: hit.position, lobe }, reflectance))
     }
@@ -167,7 +167,7 @@ impl Local {
     fn visibility(&self, from: &Vertex, to: DVec3, to_surface: Option<usize>) -> f64 {
         let offset = to - from.position;
         let length = offset.length();
-        let line = fairflight_media::Line { origin: from.position, direction: offset / length };
+        let line = Line { origin: from.position, direction: offset / length };
         let segment = Segment { line, length, from: from.surface(), to: to_surface };
         if self.surfaces.is_occluded(&segment) { 0.0 } else { (-self.sigma_t() * length).exp() }
     }

@@ -11,10 +11,10 @@ use fairflight_scene::{
 use glam::{DVec3, dvec3};
 
 /// Of walls that glow: reflectance and emission, so that the radiance is [`GLOW`].
-const REFLECTANCE: f64 = 0.5;
+const REFLECTANCE: f64 = 0.3;
 const EMISSION: f64 = 1.0;
-/// Emission/(1 − reflectance).
-pub(crate) const GLOW: f64 = 2.0;
+/// Wherever one looks.
+pub(crate) const GLOW: f64 = EMISSION / (1.0 - REFLECTANCE);
 
 pub(crate) fn phase() -> HenyeyGreenstein {
     HenyeyGreenstein::new(0.3).expect(LAWFUL)
@@ -76,17 +76,6 @@ pub(crate) fn round() -> Glowing {
     Room {
         volume: haze(homogeneous(1.5), Bounds::sphere(DVec3::ZERO, 1.0).expect(LAWFUL)),
         surfaces: Surfaces::new(vec![diffuse(ball(DVec3::ZERO, 1.0), REFLECTANCE, EMISSION)]),
-        lights: environment(0.0),
-        eye: eye(),
-    }
-}
-
-/// A box that glows, haze in its lower half.
-pub(crate) fn square() -> Glowing {
-    let bounds = Bounds::aligned_box(DVec3::splat(-1.0), dvec3(1.0, 0.0, 1.0)).expect(LAWFUL);
-    Room {
-        volume: haze(homogeneous(2.0), bounds),
-        surfaces: Surfaces::new(walls(REFLECTANCE, EMISSION)),
         lights: environment(0.0),
         eye: eye(),
     }

@@ -46,7 +46,7 @@ fn scene(sigma_t: f64, y: Vertex, vpls: Vec<Vpl<f64>>) -> Local {
         surfaces: Surfaces::new(Vec::new()),
         lights: Lights {
             background: Background::dark(),
-            sources: vec![Source::point(dvec3(0.5, 0.6, 1.0), 2.0).expect(LAWFUL)],
+            sources: vec![Source::point(dvec3(0.5, 0.6, 0.5), 15.0).expect(LAWFUL)],
         },
         vpls,
         y,
@@ -106,12 +106,12 @@ pub(crate) fn above_floor() -> Local {
 }
 
 /// The point in the medium above a floor, one light on it.
-pub(crate) fn near_floor() -> Local {
+pub(crate) fn near_floor(sigma_t: f64) -> Local {
     let vpls = vec![
         light(on(0, DVec3::Z, dvec3(0.25, 0.1, 0.0)), 1.0),
         light(in_medium(dvec3(-0.3, 0.1, 0.35), DVec3::Y), 0.6),
     ];
-    with(scene(SIGMA_T, in_medium(dvec3(0.0, 0.0, 0.2), -DVec3::Z), vpls), &[floor()])
+    with(scene(sigma_t, in_medium(dvec3(0.0, 0.0, 0.2), -DVec3::Z), vpls), &[floor()])
 }
 
 /// The point on a floor beside a wall, one light on each of them, and a medium between, or nothing.

@@ -7,15 +7,16 @@ use crate::vpl::scenes::{
     ball, clear, diffuse, environment, haze, homogeneous, open, point_light, rectangle, smoky,
 };
 use fairflight_collision::Version;
-use fairflight_media::{Bounds, EmptySpace, Medium, PhaseFunction};
+use fairflight_media::phase::HenyeyGreenstein;
+use fairflight_media::{Bounds, EmptySpace, Homogeneous, Medium, PhaseFunction};
 use fairflight_paths::transport::World;
 use fairflight_paths::{Uniform, Walk};
 use fairflight_scene::{Geometry, NoSurfaces, Surfaces, Volume};
-use fairflight_vpl::KeepNear;
+use fairflight_vpl::{KeepNear, Vpl};
 use glam::{DVec3, dvec3};
 use std::f64::consts::PI;
 
-const SAMPLES: u64 = 220_000;
+const SAMPLES: u64 = 400_000;
 const TERMINATING: Version = Version::Terminating;
 const OTHER: Version = Version::NonTerminating;
 
@@ -45,9 +46,7 @@ pub(super) fn checks() -> Vec<Check> {
 const POWER: f64 = 3.0;
 
 /// A ball of mist with a point light in its middle.
-fn mist(
-    radius: f64,
-) -> Room<NoSurfaces, fairflight_media::Homogeneous, fairflight_media::phase::HenyeyGreenstein> {
+fn mist(radius: f64) -> Room<NoSurfaces, Homogeneous, HenyeyGreenstein> {
     let bounds = Bounds::sphere(DVec3::ZERO, radius).expect(LAWFUL);
     Room {
         volume: Volume { albedo: 0.7, ..haze(homogeneous(2.0), bounds) },
@@ -58,7 +57,7 @@ fn mist(
 }
 
 /// A lamp that glows on both sides, over a gray floor and a gray ball.
-fn gray() -> Room<Surfaces<f64>, EmptySpace, fairflight_media::phase::HenyeyGreenstein> {
+fn gray() -> Room<Surfaces<f64>, EmptySpace, HenyeyGreenstein> {
     let floor = rectangle(dvec3(-1.0, -0.5, -1.0), 2.0 * DVec3::Z, 2.0 * DVec3::X);
     let lamp = rectangle(dvec3(-0.2, 0.5, -0.2), 0.4 * DVec3::X, 0.4 * DVec3::Z);
     Room {
@@ -95,13 +94,13 @@ where
 /// Σ power · |x| over first bounces: Φ a ∫ σ e^{−σ r} r dr = Φ a (1/σ − e^{−σ R} (R + 1/σ)) in a ball of radius R.
 fn first_bounce(name: &str, keep_near: Option<KeepNear>) -> Check {
     let id = format!("vpl/energy/first bounces, {name} kept");
-    Check::new(id, Law::Energy, "light paths", "a ball around a point light", 3 * SAMPLES, move |run| {
+    Check::new(id, Law::Energy, "light paths", "a ball around a point light", 3 * SAMPLES / 2, move |run| {
         let Room { volume, surfaces, lights, .. } = mist(1.0);
         let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
         let walk = Walk::new(OTHER, Uniform::new(3.0).expect(LAWFUL));
         let sigma: f64 = 2.0;
         let expected = POWER * volume.albedo * (1.0 / sigma - (-sigma).exp() * (1.0 + 1.0 / sigma));
-        let g = |vpl: &fairflight_vpl::Vpl<f64>| match vpl.bounce {
+        let g = |vpl: &Vpl<f64>| match vpl.bounce {
             1 => vpl.vertex.position.length(),
             _ => 0.0,
         };

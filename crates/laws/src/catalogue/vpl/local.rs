@@ -23,10 +23,10 @@ type Case = (&'static str, fn() -> Local, u64, &'static [(Strategy, &'static str
 pub(super) fn checks() -> Vec<Check> {
     let all = &STRATEGIES[..];
     let cases: [Case; 6] = [
-        ("one light in a medium", || tiny::medium(1), 270_000, &all[..1]),
-        ("two lights in a medium", || tiny::medium(2), 250_000, all),
-        ("a floor and lights in a medium", tiny::above_floor, 200_000, all),
-        ("a medium and lights on a floor and in it", tiny::near_floor, 450_000, &all[..1]),
+        ("one light in a medium", || tiny::medium(1), 360_000, &all[..1]),
+        ("two lights in a medium", || tiny::medium(2), 330_000, all),
+        ("a floor and lights in a medium", tiny::above_floor, 280_000, all),
+        ("a medium and lights on a floor and in it", || tiny::near_floor(tiny::SIGMA_T), 500_000, &all[..1]),
         ("a corner in a medium", || tiny::corner(tiny::SIGMA_T), 200_000, all),
         ("a corner without medium", || tiny::corner(0.0), 250_000, all),
     ];

@@ -1,13 +1,13 @@
 //! The path tracer among surfaces: furnaces, and lamps by three heuristics.
 
 use super::{Check, LAWFUL, Law, result};
-use crate::measure;
 use crate::paths::{check, judge_estimates};
 use crate::vpl::lamps::{reflected_rectangle, reflected_sphere};
 use crate::vpl::rooms::Room;
 use crate::vpl::scenes::{
     ball, clear, cloud, diffuse, environment, haze, homogeneous, open, phase, rectangle, shiny, smoky,
 };
+use crate::{CheckResult, Run, measure};
 use fairflight_collision::Version;
 use fairflight_media::{AnalyticCosine, Bounds, EmptySpace, Line, Medium, PhaseFunction};
 use fairflight_paths::transport::World;
@@ -23,7 +23,7 @@ const HEURISTICS: [(Heuristic, &str); 3] =
 
 /// Paths of a rate that is nowhere below the extinction see exactly 1.
 const WITHOUT_VARIANCE: u64 = 2_000;
-const WEIGHTED: u64 = 220_000;
+const WEIGHTED: u64 = 300_000;
 
 /// All.
 pub(super) fn checks() -> Vec<Check> {
@@ -50,7 +50,7 @@ fn of(
     name: &str,
     medium: &str,
     samples: u64,
-    function: impl Fn(crate::Run) -> crate::CheckResult + Send + Sync + 'static,
+    function: impl Fn(Run) -> CheckResult + Send + Sync + 'static,
 ) -> Check {
     Check::new(format!("paths/tracer/{name}"), Law::Radiance, "path tracing", medium, samples, function)
 }
