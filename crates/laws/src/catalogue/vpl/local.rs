@@ -10,7 +10,6 @@ use fairflight_compensation::{
 };
 use fairflight_media::Homogeneous;
 use fairflight_paths::{Ratio, RayTransmittance, Uniform, Walk};
-use fairflight_scene::Geometry;
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::Reference;
 use fairflight_transmittance::Regular;
@@ -40,41 +39,59 @@ pub(super) fn checks() -> Vec<Check> {
             }));
         }
     }
+    // Connections by ratio tracking have heavy tails; here they are mildest.
+    let name = "a medium and lights on a floor and in it";
+    let id = format!("vpl/local/{name}/other rates");
+    let estimator = "compensation, one step, below the extinction";
+    checks.push(Check::new(id, Law::Compensation, estimator, name, 700_000, |run| {
+        at_other_rates(&tiny::near_floor(tiny::SIGMA_T), run)
+    }));
     checks
 }
 
-/// Flights, and vertices as if the medium were homogeneous; on the floor, the same at a rate below the extinction, and as if
-/// the medium were half as dense.
+/// Flights, and vertices as if the medium were homogeneous, with full and with local visibility.
 fn every_placement(scene: &Local, strategy: Strategy, run: Run) -> CheckResult {
     let reference = scene.reference();
-    let walk = |rate| Walk::new(Version::NonTerminating, Uniform::new(rate * tiny::SIGMA_T).expect(LAWFUL));
-    let bounds = &scene.volume.bounds;
-    let true_mean = LocalMean::of(&scene.volume.medium, bounds, [1; 3], 1);
-    let other = Homogeneous::new(0.5 * tiny::SIGMA_T).expect(LAWFUL);
-    let other_mean = LocalMean::of(&other, bounds, [1; 3], 1);
-    let options = CompensationOptions { strategy, steps: Some(1), ..CompensationOptions::EXACT };
-    let local = CompensationOptions { placement: Placement::LocallyHomogeneous, ..options };
-    let also = strategy == Strategy::OneToMany && Geometry::<f64>::surfaces(&scene.surfaces).len() == 1;
-    let share = if also { 0.25 } else { 0.5 };
-    let part = |index| Run { seed: derive_seed(run.seed, index), alpha: share * run.alpha, ..run };
-    let (flights, homogeneous) =
-        (Compensation::new(options, &true_mean), Compensation::new(local, &true_mean));
-    let mut parts = vec![
-        ("flights", tried(scene, (walk(1.5), Regular), &flights, &reference, part(1))),
-        ("homogeneous", tried(scene, (walk(1.5), Regular), &homogeneous, &reference, part(2))),
-    ];
-    if also {
-        let ratio = Ratio(Uniform::new(1.2 * tiny::SIGMA_T).expect(LAWFUL));
-        let half = Compensation::new(local, &other_mean);
-        parts.push(("flights below", tried(scene, (walk(0.8), ratio), &flights, &reference, part(3))));
-        parts.push(("half as dense", tried(scene, (walk(1.5), ratio), &half, &reference, part(4))));
-    }
-    for options in [options, local] {
-        if let Some(index) = local_visibility_differs(scene, walk(1.5), options, &true_mean, run) {
+    let mean = LocalMean::of(&scene.volume.medium, &scene.volume.bounds, [1; 3], 1);
+    let flights = CompensationOptions { strategy, steps: Some(1), ..CompensationOptions::EXACT };
+    let homogeneous = CompensationOptions { placement: Placement::LocallyHomogeneous, ..flights };
+    for options in [flights, homogeneous] {
+        if let Some(index) = local_visibility_differs(scene, walk(1.5), options, &mean, run) {
             return CheckResult::exact(false, format!("local visibility: estimate {index} differs"));
         }
     }
-    CheckResult::of_all(parts)
+    let way = || (walk(1.5), Regular);
+    let [flights, homogeneous] = [flights, homogeneous].map(|options| Compensation::new(options, &mean));
+    CheckResult::of_all([
+        ("flights", tried(scene, way(), &flights, &reference, part(run, 1))),
+        ("homogeneous", tried(scene, way(), &homogeneous, &reference, part(run, 2))),
+    ])
+}
+
+/// Flights at a rate below the extinction, with weights of either sign, and vertices as if the medium were half as dense, connected by
+/// an estimated transmittance.
+fn at_other_rates(scene: &Local, run: Run) -> CheckResult {
+    let reference = scene.reference();
+    let half = Homogeneous::new(0.5 * tiny::SIGMA_T).expect(LAWFUL);
+    let mean = LocalMean::of(&half, &scene.volume.bounds, [1; 3], 1);
+    let flights = CompensationOptions { steps: Some(1), ..CompensationOptions::EXACT };
+    let homogeneous = CompensationOptions { placement: Placement::LocallyHomogeneous, ..flights };
+    let ratio = Ratio(Uniform::new(1.2 * tiny::SIGMA_T).expect(LAWFUL));
+    let [flights, homogeneous] = [flights, homogeneous].map(|options| Compensation::new(options, &mean));
+    CheckResult::of_all([
+        ("flights below", tried(scene, (walk(0.8), ratio), &flights, &reference, part(run, 1))),
+        ("half as dense", tried(scene, (walk(1.5), ratio), &homogeneous, &reference, part(run, 2))),
+    ])
+}
+
+/// Flights at a multiple of the extinction.
+fn walk(rate: f64) -> Walk<Uniform> {
+    Walk::new(Version::NonTerminating, Uniform::new(rate * tiny::SIGMA_T).expect(LAWFUL))
+}
+
+/// One of two parts of a check.
+fn part(run: Run, index: u64) -> Run {
+    Run { seed: derive_seed(run.seed, index), alpha: 0.5 * run.alpha, ..run }
 }
 
 fn tried<T: RayTransmittance<Homogeneous>>(
