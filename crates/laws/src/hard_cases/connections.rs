@@ -87,6 +87,7 @@ fn compensated(scene: &Local, placement: Placement, run: crate::Run) -> Outcome 
 }
 
 pub(super) fn cases() -> Vec<HardCase> {
+    type Place = (&'static str, fn() -> Local);
     let mut cases = Vec::new();
     for (depth, exact) in [(0.0, "t = u d"), (1e-18, "t = u d"), (1e3, "-ln(1 - u (1 - e^-1000)) d/1000")] {
         let distance = move |u: f64| if depth < 1.0 { u } else { -(-u).ln_1p() / depth };
@@ -99,7 +100,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             move || within(depth, distance),
         ));
     }
-    let scenes: [(&str, fn() -> Local); 2] =
+    let scenes: [Place; 2] =
         [("in a medium", || tiny::isotropic(1)), ("on a floor", || tiny::isotropic_above_floor())];
     for (place, scene) in scenes {
         for distance in [0.0, 1e-12, 1e-6] {

@@ -35,7 +35,7 @@ pub(super) fn checks() -> Vec<Check> {
     for (strategy, of) in STRATEGIES {
         let options = CompensationOptions { strategy, ..CompensationOptions::EXACT };
         // Nothing is taken away, and nothing made up for.
-        checks.push(same(format!("b=inf is unbounded, {of}"), move |run| {
+        checks.push(same(&format!("b=inf is unbounded, {of}"), move |run| {
             let unbounded = CompensationOptions { steps: Some(0), ..options };
             let [ours, theirs] = [options, unbounded].map(|options| replica(options, f64::INFINITY, Regular));
             cloud().coincides_with(&cloud(), (ours, theirs), run)
@@ -44,7 +44,7 @@ pub(super) fn checks() -> Vec<Check> {
     for placement in [Placement::FreeFlight, Placement::LocallyHomogeneous] {
         let options = CompensationOptions { placement, ..CompensationOptions::EXACT };
         // Surfaces alone: three ways to have no medium.
-        checks.push(same(format!("no medium is a medium elsewhere, {placement:?}"), move |run| {
+        checks.push(same(&format!("no medium is a medium elsewhere, {placement:?}"), move |run| {
             let mut elsewhere: Room<_, Homogeneous, _> = open(homogeneous(2.0));
             elsewhere.volume.bounds = Bounds::sphere(dvec3(0.0, 90.0, 0.0), 1.0).expect(LAWFUL);
             // A lamp, since the ball that far light covers would hold the medium, too.
@@ -63,7 +63,7 @@ pub(super) fn checks() -> Vec<Check> {
             let ours = replica(options, 2.0, Regular);
             lit.coincides_with(&elsewhere, (ours, ours), run)
         }));
-        checks.push(same(format!("no surfaces is an empty list of them, {placement:?}"), move |run| {
+        checks.push(same(&format!("no surfaces is an empty list of them, {placement:?}"), move |run| {
             let Room { volume, lights, eye, .. } = cloud();
             let listed = Room { volume, surfaces: Surfaces::new(Vec::new()), lights, eye };
             let ours = replica(options, 2.0, Regular);
@@ -71,7 +71,7 @@ pub(super) fn checks() -> Vec<Check> {
         }));
     }
     // Whatever the lights, path tracing does not see them.
-    checks.push(same("b=0 sees no light of the set".to_owned(), |run| {
+    checks.push(same("b=0 sees no light of the set", |run| {
         let [one, other] = [1.0, 3.0].map(|factor| {
             let mut scene = Local { bound: 0.0, ..tiny::above_floor() };
             scene.vpls.iter_mut().for_each(|vpl| vpl.power *= factor);
@@ -129,7 +129,7 @@ fn replica<T>(options: CompensationOptions, bound: f64, shadow: T) -> Replica<Un
     Replica { paths: 6, rays: 2, eye_samples: 2, bound, options, walk, shadow }
 }
 
-fn same(name: String, function: impl Fn(Run) -> CheckResult + Send + Sync + 'static) -> Check {
+fn same(name: &str, function: impl Fn(Run) -> CheckResult + Send + Sync + 'static) -> Check {
     let id = format!("vpl/limit/{name}");
     Check::new(id, Law::Bound, "virtual point lights", "furnace", SETS, function)
 }
