@@ -15,7 +15,7 @@ fn holds_on(medium: &str) {
         .collect();
     assert!(not_holding.is_empty(), "{not_holding:#?}");
     // Acceptance needs power: a bias of half would have shown in each, of a twentieth where only means are judged.
-    let most = if medium == "paths" { 0.05 } else { 0.5 };
+    let most = if ["paths", "vpl"].contains(&medium) { 0.05 } else { 0.5 };
     for (check, result) in &results {
         if check.law != Law::Collision {
             let detectable = result.detectable_relative_bias;
@@ -56,6 +56,7 @@ media!(
     expression,
     freeflight,
     paths,
+    vpl,
 );
 
 #[test]

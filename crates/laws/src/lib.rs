@@ -3,6 +3,7 @@
 //! * [`transmittance::check`], [`collision::check`], [`freeflight::check`], [`phase::check`]: one law each, for any
 //!   implementer.
 //! * [`paths`]: radiance against quadrature, slabs and closed forms.
+//! * [`vpl`]: virtual point lights, what bounding them takes away, and light among surfaces.
 //! * [`scores`]: which values an estimate can take, derived from what is known of a profile.
 //! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
 //! * [`hard_cases()`]: numerically hard inputs with their exact answers.
@@ -28,6 +29,7 @@ pub mod paths;
 pub mod phase;
 pub mod scores;
 pub mod transmittance;
+pub mod vpl;
 
 pub use batch::{BATCH, NotFinite, batch_count, batch_moments, batch_size, draw_batch, measure};
 pub use catalogue::{Check, Effort, Law, catalogue};

@@ -8,6 +8,7 @@ pub(crate) mod paths;
 mod phase;
 mod single_particle;
 mod specimen;
+mod vpl;
 
 use crate::{CheckResult, Kind, Run, hard_cases, twins};
 use fairflight_sources::derive_seed;
@@ -31,6 +32,12 @@ pub enum Law {
     Radiance,
     /// Importons and photons have the same expectation.
     Adjoint,
+    /// Bounded connections and their compensation add up to unbounded ones.
+    Compensation,
+    /// The power of light paths is absorbed or escapes.
+    Energy,
+    /// What no estimate exceeds, and limits in which estimators coincide, by exact comparison.
+    Bound,
     /// The squared energy of walks grows as their collisions say, by exact algebra.
     Growth,
     /// A wrong twin is rejected.
@@ -50,7 +57,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `collision/model`, `phase/name`,
+    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -98,7 +105,9 @@ impl Check {
                 | Law::FreeFlight
                 | Law::Phase
                 | Law::Radiance
-                | Law::Adjoint,
+                | Law::Adjoint
+                | Law::Compensation
+                | Law::Energy,
             ) => 6 * self.quick_samples,
             _ => self.quick_samples,
         }
@@ -134,6 +143,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(media::on_every_medium());
     checks.extend(freeflight::free_flights());
     checks.extend(paths::walks_in_space());
+    checks.extend(vpl::virtual_point_lights());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {

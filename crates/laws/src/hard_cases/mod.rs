@@ -6,6 +6,7 @@
 
 mod anisotropy;
 mod collisions;
+mod connections;
 mod far;
 mod heavy_tails;
 mod judging;
@@ -142,7 +143,7 @@ impl std::fmt::Debug for HardCase {
     }
 }
 
-/// All hard cases of transmittance and of phase functions, by number.
+/// All hard cases of transmittance, of phase functions and of virtual point lights, by number.
 #[must_use]
 pub fn hard_cases() -> Vec<HardCase> {
     let mut cases = vacuum::cases();
@@ -155,6 +156,7 @@ pub fn hard_cases() -> Vec<HardCase> {
     cases.extend(refusals::cases());
     cases.extend(heavy_tails::cases());
     cases.extend(anisotropy::cases());
+    cases.extend(connections::cases());
     cases.sort_by_key(|case| case.number);
     cases
 }

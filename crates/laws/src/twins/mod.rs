@@ -14,6 +14,7 @@ mod phase;
 mod sampling;
 mod trial;
 mod variance;
+mod vpl;
 
 use crate::Run;
 
@@ -109,5 +110,6 @@ pub fn twins() -> Vec<Twin> {
     all.extend(variance::twins());
     all.extend(phase::twins());
     all.extend(paths::twins());
+    all.extend(vpl::twins());
     all
 }

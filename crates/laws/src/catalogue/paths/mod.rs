@@ -36,7 +36,7 @@ fn radiance(
 }
 
 /// What was refused does not hold.
-fn result(verdict: &Result<Verdict, NotFinite>, run: Run) -> CheckResult {
+pub(super) fn result(verdict: &Result<Verdict, NotFinite>, run: Run) -> CheckResult {
     match verdict {
         Ok(verdict) => CheckResult::of_verdict(verdict, run.samples),
         Err(error) => CheckResult::exact(false, format!("refused: {error}")),

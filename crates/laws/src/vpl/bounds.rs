@@ -1,0 +1,108 @@
+//! What one estimate is at most, and limits in which estimators coincide, draw by draw.
+
+use super::rooms::{Replica, Room};
+use crate::{CheckResult, Run};
+use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
+use fairflight_media::{Medium, PhaseFunction};
+use fairflight_paths::transport::{Vertex, World};
+use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
+use fairflight_scene::Geometry;
+use fairflight_sources::Seeded;
+use fairflight_vpl::{Connected, Correction, Gather, Term};
+
+/// Relative rounding of a product of a path's weights.
+const ROUNDING: f64 = 1e-12;
+
+/// **Law** (raab-2008 section 4.2). With free flights and 0 ≤ σ_t ≤ σ_samp no weight exceeds 1, so that without virtual point lights the
+/// correction is at least 0 and at most `most` for each compensation vertex that lies where G > b, if no next-event estimate together
+/// with what one direction sees of emitters exceeds `most`. That is the background's radiance where it is constant and alone; and twice the greatest
+/// radiance where a lamp is there, since either technique may come close to it.
+///
+/// Unlimited recursion survives with the probability of its weight, and so keeps to the same bound.
+pub fn compensation_at_most<G, M, P, R, T>(
+    world: World<'_, G, M, P, f64>,
+    (walk, shadow): (Walk<R>, T),
+    (y, bound, steps): (&Vertex, f64, Option<u32>),
+    most: f64,
+    run: Run,
+) -> CheckResult
+where
+    G: Geometry<f64>,
+    M: Medium,
+    P: PhaseFunction,
+    R: SamplingExtinction,
+    T: RayTransmittance<M>,
+{
+    let mean = LocalMean::of(&world.volume.medium, &world.volume.bounds, [1; 3], 1);
+    let options = CompensationOptions { steps, ..CompensationOptions::EXACT };
+    let mut correction = Compensation::new(options, &mean);
+    let (term, heuristic) = (Term::Bounded(bound), Heuristic::Balance);
+    let mut gather = Gather { world, vpls: &[], term, heuristic, walk, shadow };
+    let mut source = Seeded::new(run.seed);
+    let mut greatest = 0.0_f64;
+    for draw in 0..run.samples {
+        let before = correction.vertices().1;
+        let value: f64 = correction.recover(&mut gather, y, Connected::All, &mut source);
+        let vertices = (correction.vertices().1 - before) as f64;
+        if !(value >= 0.0 && value <= most * vertices * (1.0 + ROUNDING)) {
+            return CheckResult::exact(false, format!("draw {draw}: {value} at {vertices} vertices"));
+        }
+        greatest = greatest.max(value / vertices.max(1.0));
+    }
+    // A bound that nothing comes close to would prove nothing.
+    let holds = greatest > 0.2 * most;
+    let reason = format!("at most {greatest:.4} of {most} per vertex in {} draws", run.samples);
+    CheckResult {
+        samples: run.samples,
+        detectable_relative_bias: Some(ROUNDING),
+        ..CheckResult::exact(holds, reason)
+    }
+}
+
+/// **Law.** Two ways to say the same thing give the same numbers for the same variates.
+pub fn coincide(
+    mut one: impl FnMut(&mut Seeded) -> f64,
+    mut other: impl FnMut(&mut Seeded) -> f64,
+    run: Run,
+) -> CheckResult {
+    let (mut first, mut second) = (Seeded::new(run.seed), Seeded::new(run.seed));
+    let mut sum = 0.0;
+    for draw in 0..run.samples {
+        let (a, b) = (one(&mut first), other(&mut second));
+        if a.to_bits() != b.to_bits() {
+            return CheckResult::exact(false, format!("draw {draw}: {a} and {b}"));
+        }
+        sum += a.abs();
+    }
+    let reason = format!("{} draws agree to the last bit", run.samples);
+    CheckResult {
+        samples: run.samples,
+        detectable_relative_bias: Some(f64::EPSILON),
+        // Zeros agree with anything.
+        ..CheckResult::exact(sum > 0.0, reason)
+    }
+}
+
+impl<G, M, P> Room<G, M, P>
+where
+    G: Geometry<f64>,
+    M: Medium,
+    P: PhaseFunction,
+{
+    /// [`coincide`] for the replicas of two rooms that differ in their types alone, or in what should not matter.
+    pub fn coincides_with<H, N, R, T, U>(
+        &self,
+        other: &Room<H, N, P>,
+        (ours, theirs): (Replica<R, T>, Replica<R, U>),
+        run: Run,
+    ) -> CheckResult
+    where
+        H: Geometry<f64>,
+        N: Medium,
+        R: SamplingExtinction + Copy,
+        T: RayTransmittance<M> + Copy,
+        U: RayTransmittance<N> + Copy,
+    {
+        coincide(self.replicas(ours), other.replicas(theirs), run)
+    }
+}

@@ -1,0 +1,62 @@
+//! Where the power of light paths goes.
+
+use crate::{NotFinite, Run, measure};
+use fairflight_media::{Medium, PhaseFunction};
+use fairflight_paths::transport::World;
+use fairflight_paths::{SamplingExtinction, Walk};
+use fairflight_scene::Geometry;
+use fairflight_stats::{Reference, Verdict, judge};
+use fairflight_vpl::{Emitters, KeepNear, Ledger, LightPaths, Vpl};
+use glam::DVec3;
+
+/// **Law.** E\[absorbed + escaped\] of one light path that carries all power is that power, for an albedo that is not 0.
+///
+/// # Errors
+/// If an estimate is no number.
+pub fn check<G, M, P, R>(
+    world: World<'_, G, M, P, f64>,
+    walk: Walk<R>,
+    power: f64,
+    run: Run,
+) -> Result<Verdict, NotFinite>
+where
+    G: Geometry<f64>,
+    M: Medium,
+    P: PhaseFunction,
+    R: SamplingExtinction,
+{
+    let emitters = Emitters::new(world.lights, world.surfaces, world.enclosing_ball(), DVec3::ZERO);
+    let paths = LightPaths::new(world, &emitters, walk);
+    let measured = measure(run.seed, run.samples, |source| {
+        let mut ledger = Ledger::empty();
+        paths.trace(1.0, &mut ledger, source, |_| {});
+        ledger.absorbed + ledger.escaped
+    })?;
+    Ok(judge(&measured, &Reference::exact(power), run.alpha))
+}
+
+/// **Law.** The sum of power · g(x) over the virtual point lights of a path is `expected`, whether those far away are thinned or not.
+///
+/// # Errors
+/// If an estimate is no number.
+pub fn check_scattered<G, M, P, R>(
+    world: World<'_, G, M, P, f64>,
+    (walk, keep_near): (Walk<R>, Option<KeepNear>),
+    (g, expected): (impl Fn(&Vpl<f64>) -> f64, f64),
+    run: Run,
+) -> Result<Verdict, NotFinite>
+where
+    G: Geometry<f64>,
+    M: Medium,
+    P: PhaseFunction,
+    R: SamplingExtinction,
+{
+    let emitters = Emitters::new(world.lights, world.surfaces, world.enclosing_ball(), DVec3::ZERO);
+    let paths = LightPaths::new(world, &emitters, walk).keeping_near(keep_near);
+    let measured = measure(run.seed, run.samples, |source| {
+        let mut sum = 0.0;
+        paths.trace(1.0, &mut Ledger::empty(), source, |vpl| sum += vpl.power * g(&vpl));
+        sum
+    })?;
+    Ok(judge(&measured, &Reference::exact(expected), run.alpha))
+}
