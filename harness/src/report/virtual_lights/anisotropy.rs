@@ -19,7 +19,7 @@ const PATHS: u32 = 100;
 /// Sets of an image.
 const SETS: u32 = 48;
 /// Paths per pixel of the references.
-const REFERENCE: u32 = 4096;
+const REFERENCE: u32 = 2048;
 
 pub(super) fn steps() -> u64 {
     2 * COSINES.len() as u64
@@ -43,7 +43,7 @@ pub(super) struct Anisotropy {
 pub(super) fn study(run: &Run<'_>) -> Result<Anisotropy, Failure> {
     let mut points = Vec::new();
     for (k, g) in (0..).zip(COSINES) {
-        let subject = scenes::haze(48, g)?;
+        let subject = scenes::haze(scenes::side(run), g)?;
         let reference = Reference::of(run, &subject, REFERENCE, run.seed(70, k))?;
         let choice = Choice { strategy: "one_to_one", placement: "locally_homogeneous", ..Choice::EXACT };
         let images = subject.with("integrator", choice.lights(PATHS, 4, BOUND)).measure(

@@ -12,9 +12,8 @@ const REPLICAS: u32 = 8;
 /// Light paths of a set.
 const PATHS: u32 = 100;
 /// Sets of an image.
-const SETS: u32 = 96;
-/// Pixels along each side of the images, and (below) of the blocks over which differences are averaged.
-const SIDE: u32 = 48;
+const SETS: u32 = 64;
+/// Pixels along each side of the blocks over which differences are averaged.
 const BLOCK: usize = 8;
 /// Bounds at which vertices are counted \[1/length²\].
 pub(super) const BOUNDS: [f64; 5] = [1.0, 5.0, 20.0, 100.0, 1000.0];
@@ -48,14 +47,14 @@ pub(super) fn study(run: &Run<'_>) -> Result<Approximations, Failure> {
     let exact = Choice { strategy: "one_to_one", placement: "locally_homogeneous", ..Choice::EXACT };
     let mut transmittance = compare(
         run,
-        &scenes::smoke_room(SIDE)?,
+        &scenes::smoke_room(scenes::side(run))?,
         ("transmittance", "Fig. 5: exact and approximate transmittance to the compensation vertex"),
         [exact, Choice { transmittance: "approximate", ..exact }],
         40,
     )?;
     let mut visibility = compare(
         run,
-        &scenes::screen(SIDE)?,
+        &scenes::screen(scenes::side(run))?,
         ("visibility", "Fig. 8: visibility of the compensation vertex, seen and ignored"),
         [exact, Choice { visibility: "ignored", ..exact }],
         50,
@@ -108,7 +107,7 @@ fn compare(
         resolution: images.first().resolution(),
         pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure: super::EXPOSURE },
     };
-    let side = SIDE as usize / BLOCK;
+    let side = scenes::side(run) as usize / BLOCK;
     let shown = Picture {
         id: format!("{id}-difference"),
         label: "difference".to_owned(),
@@ -124,9 +123,10 @@ fn compare(
     };
     let mut section = Section::new(id, title);
     section.text = vec![format!(
-        "{SIDE} x {SIDE} pixels in gray, 1-to-1 locally homogeneous, unlimited steps, {} sets of {PATHS} light paths, {REPLICAS} independent \
-         images each way. The mean radiance changes by {:.2} % [{:.2}, {:.2}]; the greatest change of a block that is beyond four standard \
-         errors is {:.2} % of the mean radiance (noise of a block: {:.2} %).",
+        "{0} x {0} pixels in gray, 1-to-1 locally homogeneous, unlimited steps, {1} sets of {PATHS} light paths, {REPLICAS} independent \
+         images each way. The mean radiance changes by {2:.2} % [{3:.2}, {4:.2}]; the greatest change of a block that is beyond four standard \
+         errors is {5:.2} % of the mean radiance (noise of a block: {6:.2} %).",
+        scenes::side(run),
         run.samples(SETS),
         100.0 * relative,
         100.0 * (relative - half),
@@ -163,7 +163,7 @@ fn blocks(exact: &Replicas, approximate: &Replicas) -> Vec<(f64, f64)> {
 
 /// How many compensation vertices of a free flight lie where something is lost.
 fn vertices(run: &Run<'_>) -> Result<(Vec<(f64, f64)>, Section), Failure> {
-    let subject = scenes::smoke_room(SIDE)?;
+    let subject = scenes::smoke_room(scenes::side(run))?;
     let mut table = Table::new(
         "vertices-table",
         "Compensation vertices that count",

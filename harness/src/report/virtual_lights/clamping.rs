@@ -15,7 +15,7 @@ const REPLICAS: u32 = 8;
 /// Light paths of a set.
 const PATHS: u32 = 100;
 /// Sets of an image.
-const SETS: u32 = 96;
+const SETS: u32 = 64;
 /// Paths per pixel of the references.
 const REFERENCE: u32 = 4096;
 /// Pixels of the scanline.
@@ -83,8 +83,8 @@ fn picture(id: &str, label: &str, lines: Vec<String>, images: &Replicas, exposur
 
 /// Fig. 2: a cloud by path tracing, by unbounded lights, by clamped ones.
 fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
-    let subject = scenes::cloud(run.quick_or(48, 96))?;
-    let reference = Reference::of(run, &subject, REFERENCE / 4, run.seed(20, 0))?;
+    let subject = scenes::cloud(run.quick_or(32, 64))?;
+    let reference = Reference::of(run, &subject, REFERENCE / 8, run.seed(20, 0))?;
     let exposure = 6.0;
     let energy = |images: &Replicas| images.mean_of_images().0 / reference.mean.0;
     let mut pictures = vec![picture(
@@ -119,7 +119,7 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
 
 /// Fig. 11 and E1: the energy of the room, stage by stage.
 fn energy(run: &Run<'_>) -> Result<(Vec<Stage>, Section), Failure> {
-    let subject = scenes::smoke_room(48)?;
+    let subject = scenes::smoke_room(scenes::side(run))?;
     let reference = Reference::of(run, &subject, REFERENCE, run.seed(22, 0))?;
     let mut measured = Vec::new();
     for (k, (name, integrator)) in (0..).zip(stages()) {
@@ -161,9 +161,10 @@ fn energy(run: &Run<'_>) -> Result<(Vec<Stage>, Section), Failure> {
     let mut section =
         Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke");
     section.text = vec![format!(
-        "48 x 48 pixels in gray, {} sets of {PATHS} light paths per image, b = {BOUND}, four points per eye ray, {REPLICAS} independent images. \
+        "{side} x {side} pixels in gray, {} sets of {PATHS} light paths per image, b = {BOUND}, four points per eye ray, {REPLICAS} independent images. \
          In the differences green is light that is missing, red light that is too much, as in the paper; noise is both.",
-        run.samples(SETS)
+        run.samples(SETS),
+        side = scenes::side(run)
     )];
     section.tables.push(table);
     let rows = measured.iter().enumerate().map(|(k, stage)| GalleryRow {

@@ -50,7 +50,7 @@ struct Connection {
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Costs, Failure> {
-    let subject = scenes::smoke_room(32)?;
+    let subject = scenes::smoke_room(run.quick_or(16, 32))?;
     let seconds = |integrator, k: u64| -> Result<(Measured, f64), Failure> {
         let images = subject.with("integrator", integrator).measure(
             run.samples(SETS).max(2),

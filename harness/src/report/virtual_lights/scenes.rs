@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::report::replicas::Subject;
+use crate::report::run::Run;
 use serde_json::{Value, json};
 
 /// A room of rectangles with a lamp, full of noisy smoke.
@@ -11,6 +12,11 @@ const HAZE_SPHERES: &str = include_str!("../../../scenes/haze-spheres.json");
 /// A cloud lit by a lamp beside it.
 const LIT_CLOUD: &str = include_str!("../../../scenes/lit-cloud.json");
 
+/// Pixels along each side of what is measured.
+pub(super) fn side(run: &Run<'_>) -> u32 {
+    run.quick_or(24, 48)
+}
+
 /// The bound that all figures use where nothing else is said \[1/length²\].
 pub(super) const BOUND: f64 = 20.0;
 
@@ -18,7 +24,8 @@ fn gray(text: &str, resolution: [u32; 2]) -> Result<Subject, Failure> {
     let mut scene: Value = serde_json::from_str(text)
         .map_err(|error| Failure::refused(format!("a scene of the report: {error}")))?;
     for surface in scene["surfaces"].as_array_mut().into_iter().flatten() {
-        let reflectance = &mut surface["material"]["reflectance"];
+        // Smooth surfaces have none, and must not get one.
+        let Some(reflectance) = surface["material"].get_mut("reflectance") else { continue };
         if let Some(rgb) = reflectance.as_array() {
             let sum: f64 = rgb.iter().filter_map(Value::as_f64).sum();
             *reflectance = json!(sum / rgb.len() as f64);

@@ -27,7 +27,7 @@ struct Method {
     name: &'static str,
     strategy: &'static str,
     integrator: Value,
-    /// Sets of lights, or paths per pixel, of the longest image; chosen so that it takes about a second and a half of CPU time.
+    /// Sets of lights, or paths per pixel, of the longest image; so many that images of a strategy take alike, some seconds of CPU time but for N-to-1, whose least images have one set.
     sets: u32,
 }
 
@@ -43,9 +43,9 @@ fn methods() -> Vec<Method> {
         method("1-to-N, locally homogeneous", "one_to_many", local, 1, 16),
         method("N-to-1", "many_to_one", free, 1, 16),
         method("N-to-1, locally homogeneous", "many_to_one", local, 1, 16),
-        method("1-to-1", "one_to_one", free, 4, 128),
-        method("1-to-1, locally homogeneous", "one_to_one", local, 4, 64),
-        Method { name: "path tracing", strategy: "", integrator: path_tracer(), sets: 256 },
+        method("1-to-1", "one_to_one", free, 4, 160),
+        method("1-to-1, locally homogeneous", "one_to_one", local, 4, 128),
+        Method { name: "path tracing", strategy: "", integrator: path_tracer(), sets: 512 },
     ]
 }
 
@@ -85,7 +85,7 @@ impl Strategies {
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Strategies, Failure> {
-    let subject = scenes::smoke_room(48)?;
+    let subject = scenes::smoke_room(scenes::side(run))?;
     let reference = Reference::of(run, &subject, REFERENCE, run.seed(0, 0))?;
     let (mut entries, mut curves) = (Vec::new(), Vec::new());
     for (m, method) in (0..).zip(methods()) {
@@ -123,11 +123,12 @@ pub(super) fn study(run: &Run<'_>) -> Result<Strategies, Failure> {
     chart.curves = curves;
     let mut section = Section::new("strategies", "Fig. 6 and 7: strategies of compensation at equal time");
     section.text = vec![format!(
-        "The room with smoke in gray, 48 x 48 pixels, sets of {PATHS} light paths, b = {BOUND}, unlimited steps, transmittance and visibility \
+        "The room with smoke in gray, {side} x {side} pixels, sets of {PATHS} light paths, b = {BOUND}, unlimited steps, transmittance and visibility \
          exact: all of these are unbiased. 1-to-N: one compensation vertex per point, connected with all lights. N-to-1: one vertex for each \
          light. 1-to-1: each point on the eye ray has one light and one vertex, four points per ray. Errors are against {REFERENCE} paths per \
          pixel, whose own error ({:.1e}) is taken off; intervals are 95 %, from {REPLICAS} independent images with sets of their own.",
-        reference.squared_error.sqrt()
+        reference.squared_error.sqrt(),
+        side = scenes::side(run)
     )];
     section.charts.push(chart);
     section.tables.push(table(&entries));
