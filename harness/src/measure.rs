@@ -57,7 +57,17 @@ pub fn measure<G: Field, E: Estimator<G>>(
     place: &(dyn Fn(Violation) -> Failure + Sync),
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    let batches = batch_count(draws.samples);
+    in_batches(draws.samples, advance, &|index, values| one_batch(lawful, draws, index, values, place))
+}
+
+/// Draws all batches on the threads of the current pool, and puts them together in their order. One copy for all estimators: a call
+/// per batch costs nothing.
+fn in_batches(
+    samples: u64,
+    advance: &(dyn Fn(u64) + Sync),
+    draw: &(dyn Fn(u64, &mut Vec<f64>) -> Result<Batch, Failure> + Sync),
+) -> Result<Measurement, Failure> {
+    let batches = batch_count(samples);
     let mut moments = Moments::new();
     let (mut seconds, mut lookups, mut counted) = (0.0, 0, 0);
     for start in (0..batches).step_by(CHUNK as usize) {
@@ -66,8 +76,8 @@ pub fn measure<G: Field, E: Estimator<G>>(
             .map_init(
                 || Vec::with_capacity(BATCH as usize),
                 |values, index| {
-                    let batch = one_batch(lawful, draws, index, values, place)?;
-                    advance(batch_size(draws.samples, index));
+                    let batch = draw(index, values)?;
+                    advance(batch_size(samples, index));
                     Ok(batch)
                 },
             )

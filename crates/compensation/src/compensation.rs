@@ -31,8 +31,12 @@ use fairflight_vpl::{Connected, Correction, Gather, Pairing, Term};
 /// **Law.** For unlimited steps, exact transmittance and full or local visibility: connections + correction have the expectation of
 /// unbounded connections, for every b ≥ 0. b = 0 is path tracing, b = ∞ leaves nothing to do.
 ///
-/// **Bound.** With 0 ≤ σ_t ≤ σ_samp and free flights every weight is at most 1, so that a path adds at most the greatest radiance of
-/// emitters per vertex (raab-2008 section 4.2). Unlimited recursion survives with the probability of its weight.
+/// **Bound.** With 0 ≤ σ_t ≤ σ_samp and free flights every weight is at most 1, so that each vertex of a path adds at most what it finds of
+/// emitters: the radiance of a constant environment, and of emitters with extent at most twice the greatest radiance, once by each technique
+/// (raab-2008 section 4.2 says: the brightness of the light source). Unlimited recursion survives with the probability of its weight.
+///
+/// With b = 0 the region is endless: vertices that are placed as if the medium were homogeneous then have weights without a bound, and
+/// heavy tails where the medium is not.
 #[derive(Clone, Debug)]
 pub struct Compensation<'m> {
     options: CompensationOptions,

@@ -163,7 +163,7 @@ impl<C: Spectrum> AddPass<'_, C> {
             canvas.warning = draw.check_growth(medium)?;
         }
         let (seed, drawn) = (canvas.seed, canvas.samples);
-        let added = draw.tiles(&mut canvas.tiles, samples, |tile| {
+        let added = draw.tiles(&mut canvas.tiles, samples, &|tile| {
             let job = AddSamples { camera: &draw.plan.camera, tile, drawn, samples, seed };
             draw.tile(medium, |volume, unlawful| pass.integrate(&batch, volume, unlawful, job)?)
         })?;
@@ -256,16 +256,16 @@ impl<C: Spectrum> Draw<'_, C> {
         Ok((added.sum, spent))
     }
 
-    /// All tiles; what comes of them in their order.
-    fn tiles<T: Send>(
+    /// All tiles; what comes of them in their order. One copy for all integrators: a call per tile costs nothing.
+    fn tiles(
         &self,
         tiles: &mut [Tile<C>],
         samples: u32,
-        tile: impl Fn(&mut Tile<C>) -> Result<T, Failure> + Sync,
-    ) -> Result<Vec<T>, Failure> {
+        tile: &(dyn Fn(&mut Tile<C>) -> Result<(f64, Spent), Failure> + Sync),
+    ) -> Result<Vec<(f64, Spent)>, Failure> {
         // A tile behind the first failure is not drawn; one before it is, since it might fail too.
         let first_failure = AtomicUsize::new(usize::MAX);
-        let done: Vec<Option<Result<T, Failure>>> = tiles
+        let done: Vec<Option<Result<(f64, Spent), Failure>>> = tiles
             .par_iter_mut()
             .enumerate()
             .with_max_len(1)

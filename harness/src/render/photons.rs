@@ -56,8 +56,16 @@ impl<C: Spectrum> Draw<'_, C> {
         walk: &WalkPlan,
     ) -> Result<PhotonLayer<C>, Failure> {
         let count = REPLICAS.min(self.plan.samples_per_pixel);
-        let replicas: Vec<Result<Replica<C>, Failure>> =
-            (0..count).into_par_iter().map(|index| self.replica(medium, walk, index, count)).collect();
+        self.layer(count, &|index| self.replica(medium, walk, index, count))
+    }
+
+    /// All replicas, put together. One copy for all media.
+    fn layer(
+        &self,
+        count: u32,
+        replica: &(dyn Fn(u32) -> Result<Replica<C>, Failure> + Sync),
+    ) -> Result<PhotonLayer<C>, Failure> {
+        let replicas: Vec<Result<Replica<C>, Failure>> = (0..count).into_par_iter().map(replica).collect();
         let replicas = replicas.into_iter().collect::<Result<Vec<_>, Failure>>()?;
         let samples = f64::from(self.plan.samples_per_pixel);
         // Of one sample, from replicas of n_k samples each: Σ n_k (x_k − x)²/(K − 1).

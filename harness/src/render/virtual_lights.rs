@@ -131,16 +131,23 @@ impl<C: Spectrum> Draw<'_, C> {
             };
             Ok(Traced { vpls, ledger, spent })
         };
-        let chunks: Vec<Result<Traced<C>, Failure>> =
-            (0..paths.div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
-        let nothing = Traced { vpls: Vec::new(), ledger: Ledger::empty(), spent: Spent::default() };
-        chunks.into_iter().try_fold(nothing, |mut all, chunk| {
-            let mut chunk = chunk?;
-            all.vpls.append(&mut chunk.vpls);
-            let (ledger, spent) = (all.ledger.and(&chunk.ledger), all.spent.and(chunk.spent));
-            Ok(Traced { vpls: all.vpls, ledger, spent })
-        })
+        in_chunks(paths.div_ceil(CHUNK), &chunk)
     }
+}
+
+/// Traces so many chunks on the threads of the current pool, and puts them together in their order. One copy for all scenes.
+fn in_chunks<C: Spectrum>(
+    count: u32,
+    chunk: &(dyn Fn(u32) -> Result<Traced<C>, Failure> + Sync),
+) -> Result<Traced<C>, Failure> {
+    let chunks: Vec<Result<Traced<C>, Failure>> = (0..count).into_par_iter().map(chunk).collect();
+    let nothing = Traced { vpls: Vec::new(), ledger: Ledger::empty(), spent: Spent::default() };
+    chunks.into_iter().try_fold(nothing, |mut all, chunk| {
+        let mut chunk = chunk?;
+        all.vpls.append(&mut chunk.vpls);
+        let (ledger, spent) = (all.ledger.and(&chunk.ledger), all.spent.and(chunk.spent));
+        Ok(Traced { vpls: all.vpls, ledger, spent })
+    })
 }
 
 fn none_deposited<C: Spectrum>(ledger: &Ledger<C>) -> Failure {

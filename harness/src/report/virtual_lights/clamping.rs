@@ -220,7 +220,7 @@ fn scanline(run: &Run<'_>) -> Result<Section, Failure> {
     }
     add("unbounded, one set", lights(PATHS, 256, &Value::Null), 1, run.seed(26, 0), &subject)?;
     let mut chart = Chart::new(
-        "scanline",
+        "scanline-radiance",
         "Fig. 4: a scanline",
         Axis::linear("column [pixel]"),
         Axis::linear("radiance [radiance]"),
