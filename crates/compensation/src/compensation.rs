@@ -95,8 +95,11 @@ impl<'m> Compensation<'m> {
         }
         self.inside += 1;
         let weight = factor * lost;
-        let share = gather.share(which);
-        let mut scattered = gather.emitters(&vertex, source) * share;
+        let mut scattered = match (self.options.strategy, which) {
+            // Emitters have a vertex of their own.
+            (Strategy::ManyToOne, Connected::One(_)) => C::ZERO,
+            _ => gather.emitters(&vertex, source) * gather.share(which),
+        };
         scattered += gather.connected(&vertex, which, source);
         scattered += self.further(gather, &vertex, (which, depth + 1), weight.magnitude(), source);
         weight * scattered
@@ -168,7 +171,8 @@ impl<C: Spectrum> Correction<C> for Compensation<'_> {
         let region = Region::new(*y, bound, &self.options, gather);
         let lights = gather.vpls.len();
         if which == Connected::All && self.options.strategy == Strategy::ManyToOne && lights > 0 {
-            let mut sum = C::ZERO;
+            // engelhardt-2013 section 5 splits the integral likewise: from emitters once, from each light by itself.
+            let mut sum = self.step(gather, &region, (Connected::Nothing, 0), source);
             for index in 0..lights {
                 sum += self.step(gather, &region, (Connected::One(index), 0), source);
             }
@@ -265,8 +269,8 @@ mod tests {
             let script = &across[..2 * steps];
             let limit = steps as u32;
             let (all, once) = recovered(strategy(Strategy::OneToMany, limit), 1.0, Connected::All, script);
-            let (each, thrice) =
-                recovered(strategy(Strategy::ManyToOne, limit), 1.0, Connected::All, &script.repeat(3));
+            let (each, apart) =
+                recovered(strategy(Strategy::ManyToOne, limit), 1.0, Connected::All, &script.repeat(4));
             let mean = (0..3)
                 .map(|k| {
                     3.0 * recovered(strategy(Strategy::OneToOne, limit), 1.0, Connected::One(k), script).0
@@ -274,7 +278,8 @@ mod tests {
                 .sum::<f64>()
                 / 3.0;
             assert!((all - each).abs() < 1e-14 && (all - mean).abs() < 1e-14, "{all} {each} {mean}");
-            assert_eq!((once.0, thrice.0), (steps as u64, 3 * steps as u64));
+            // One vertex for each light, and one for the emitters.
+            assert_eq!((once.0, apart.0), (steps as u64, 4 * steps as u64));
         }
         assert_eq!(Strategy::OneToMany.pairing(), Pairing::Every);
         assert_eq!(Strategy::ManyToOne.pairing(), Pairing::Every);

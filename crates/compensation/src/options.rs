@@ -2,16 +2,17 @@
 
 /// How compensation vertices go with virtual point lights (engelhardt-2013 section 4.3, fig. 6).
 ///
-/// With s_k(y) = connection(y, k) + w(x)·(D(x)/M + s_k(x)) the light at y is D(y) + Σ_k s_k(y): every strategy is a way to sum this, where
-/// D is the light of emitters, M the number of virtual point lights, x a compensation vertex and w its weight.
+/// With s_k(y) = connection(y, k) + w(x)·s_k(x) and s(y) = w(x)·(D(x) + s(x)) the light at y is D(y) + s(y) + Σ_k s_k(y): every strategy is a
+/// way to sum this, where D is the light of emitters, x a compensation vertex and w its weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Strategy {
     /// 1-to-N: one compensation vertex per point, connected with all lights; it counts D(x) once (raab-2008 section 4.2).
     OneToMany,
-    /// N-to-1: as many compensation vertices per point as there are lights, each connected with its own; each counts D(x)/M.
+    /// N-to-1: as many compensation vertices per point as there are lights, each connected with its own, and one more that sees emitters
+    /// and counts D(x) once.
     ManyToOne,
-    /// 1-to-1: each point on the eye ray has one light, which counts M times, and one compensation vertex connected with the same
-    /// light.
+    /// 1-to-1: each point on the eye ray has one of the M lights, which counts M times, and one compensation vertex connected with the same
+    /// light, where D(x) counts once.
     OneToOne,
 }
 

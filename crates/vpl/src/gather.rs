@@ -35,6 +35,8 @@ pub enum Connected {
     All,
     /// One of them.
     One(usize),
+    /// None: only emitters are seen.
+    Nothing,
 }
 
 /// Virtual point lights, and how one sees them.
@@ -117,6 +119,7 @@ where
         source: &mut S,
     ) -> C {
         match which {
+            Connected::Nothing => C::ZERO,
             Connected::One(index) => self.one(y, index, source),
             Connected::All => {
                 let mut sum = C::ZERO;
@@ -132,7 +135,7 @@ where
     #[must_use]
     pub fn share(&self, which: Connected) -> f64 {
         match which {
-            Connected::All => 1.0,
+            Connected::All | Connected::Nothing => 1.0,
             Connected::One(_) => 1.0 / self.vpls.len() as f64,
         }
     }

@@ -167,6 +167,14 @@ impl Measured {
     }
 }
 
+/// The mean of independent numbers and its standard error.
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    (mean, (variance / n).sqrt())
+}
+
 /// The two-sided 95 % quantile of Student's t.
 fn student_quantile(degrees: usize) -> f64 {
     const TABLE: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
@@ -219,10 +227,7 @@ impl Replicas {
     pub(super) fn mean_of_images(&self) -> (f64, f64) {
         let means: Vec<f64> =
             self.images.iter().map(|image| image.gray().sum::<f64>() / image.means().len() as f64).collect();
-        let n = means.len() as f64;
-        let mean = means.iter().sum::<f64>() / n;
-        let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        (mean, (variance / n).sqrt())
+        mean_and_error(&means)
     }
 
     /// The mean radiance of all images with its 95 % interval, from their scatter.
@@ -238,10 +243,19 @@ impl Replicas {
         Measured::of_positive(&seconds)
     }
 
-    /// Mean and standard error of each block of `side` x `side` pixels, row by row, from the scatter of the images.
-    pub(super) fn means_of_blocks(&self, side: usize) -> Vec<(f64, f64)> {
+    /// The change of the mean radiance from `other`, image by image of the same seeds, with its 95 % interval.
+    pub(super) fn measured_change(&self, other: &Self) -> Measured {
+        let mean = |image: &Picture| image.gray().sum::<f64>() / image.means().len() as f64;
+        let pairs = self.images.iter().zip(&other.images);
+        let (value, error) = mean_and_error(&pairs.map(|(a, b)| mean(a) - mean(b)).collect::<Vec<_>>());
+        let half = student_quantile(self.images.len() - 1) * error;
+        Measured { value, interval: [value - half, value + half] }
+    }
+
+    /// The change of each block of `side` x `side` pixels from `other`, row by row, with its standard error from the scatter of pairs of
+    /// images of the same seeds.
+    pub(super) fn changes_of_blocks(&self, other: &Self, side: usize) -> Vec<(f64, f64)> {
         let [width, height] = self.first().resolution();
-        let n = self.images.len() as f64;
         let block = |image: &Picture, column: usize, row: usize| {
             let pixels = image.means();
             let rows = (row * side..(row + 1) * side).map(|y| &pixels[y * width + column * side..][..side]);
@@ -250,10 +264,9 @@ impl Replicas {
         let mut blocks = Vec::new();
         for row in 0..height / side {
             for column in 0..width / side {
-                let means: Vec<f64> = self.images.iter().map(|image| block(image, column, row)).collect();
-                let mean = means.iter().sum::<f64>() / n;
-                let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
-                blocks.push((mean, (variance / n).sqrt()));
+                let pairs = self.images.iter().zip(&other.images);
+                let changes = pairs.map(|(a, b)| block(a, column, row) - block(b, column, row));
+                blocks.push(mean_and_error(&changes.collect::<Vec<_>>()));
             }
         }
         blocks

@@ -1,25 +1,28 @@
 //! Fig. 5 and 8: what approximate transmittance and ignored visibility change. E3: how many vertices a free flight loses.
 
+use super::reference::Reference;
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
 use crate::report::document::{Cell, Gallery, GalleryRow, Picture, Pixels, Section, Table};
 use crate::report::replicas::{Measured, Replicas, Subject};
 use crate::report::run::Run;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 8;
 /// Light paths of a set.
 const PATHS: u32 = 100;
 /// Sets of an image.
-const SETS: u32 = 64;
+const SETS: u32 = 160;
+/// Paths per pixel of the whole images.
+const REFERENCE: u32 = 512;
 /// Pixels along each side of the blocks over which differences are averaged.
-const BLOCK: usize = 8;
+const BLOCK: usize = 12;
 /// Bounds at which vertices are counted \[1/length²\].
 pub(super) const BOUNDS: [f64; 5] = [1.0, 5.0, 20.0, 100.0, 1000.0];
 
 pub(super) fn steps() -> u64 {
-    4 + BOUNDS.len() as u64
+    6 + BOUNDS.len() as u64
 }
 
 /// The difference that an approximation makes.
@@ -78,21 +81,24 @@ fn compare(
     [with, without]: [Choice; 2],
     seed: u64,
 ) -> Result<Difference, Failure> {
-    let render = |choice: Choice, k: u64| {
-        let integrator = choice.lights(PATHS, 4, BOUND);
+    // The same sets of lights both ways, and nothing but the compensation: the rest is the same.
+    let render = |choice: Choice| {
+        let mut integrator = choice.lights(PATHS, 4, BOUND);
+        integrator["component"] = json!("correction");
         let images = subject.with("integrator", integrator).measure(
             run.samples(SETS),
-            (run.seed(seed, k), REPLICAS),
+            (run.seed(seed, 0), REPLICAS),
             &run.media,
         );
         run.advance();
         images
     };
-    let (exact, approximate) = (render(with, 0)?, render(without, 1)?);
-    let [(brightness, error), (other, other_error)] =
-        [&exact, &approximate].map(|images| images.mean_of_images());
-    let relative = (other - brightness) / brightness;
-    let half = 2.0 * error.hypot(other_error) / brightness;
+    let (exact, approximate) = (render(with)?, render(without)?);
+    let whole = Reference::of(run, subject, REFERENCE, run.seed(seed, 1))?;
+    let brightness = whole.mean.0;
+    let change = approximate.measured_change(&exact).map(|change| change / brightness);
+    let relative = change.value;
+    let half = 0.5 * (change.interval[1] - change.interval[0]);
     let blocks = blocks(&exact, &approximate);
     // Two standard errors of the greatest of so many blocks are noise; four are not.
     let beyond = |&&(difference, error): &&(f64, f64)| difference.abs() > 4.0 * error;
@@ -123,7 +129,7 @@ fn compare(
     };
     let mut section = Section::new(id, title);
     section.text = vec![format!(
-        "{0} x {0} pixels in gray, 1-to-1 locally homogeneous, unlimited steps, {1} sets of {PATHS} light paths, {REPLICAS} independent \
+        "{0} x {0} pixels in gray, the compensation alone, 1-to-1 locally homogeneous, unlimited steps, b = {BOUND}, {1} sets of {PATHS} light paths, {REPLICAS} independent \
          images each way. The mean radiance changes by {2:.2} % [{3:.2}, {4:.2}]; the greatest change of a block that is beyond four standard \
          errors is {5:.2} % of the mean radiance (noise of a block: {6:.2} %).",
         scenes::side(run),
@@ -141,24 +147,19 @@ fn compare(
         rows: vec![GalleryRow {
             label: String::new(),
             pictures: vec![
+                picture("whole", "path tracing", &whole.shown),
                 picture("exact", "exact", &exact),
                 picture("approximate", "approximated", &approximate),
                 shown,
             ],
         }],
     });
-    let relative = Measured { value: relative, interval: [relative - half, relative + half] };
-    Ok(Difference { relative, greatest, noise, scale, section })
+    Ok(Difference { relative: change, greatest, noise, scale, section })
 }
 
-/// The difference of the means of blocks of pixels and its standard error, from the scatter of independent images.
+/// The difference of the means of blocks of pixels and its standard error, from the scatter of pairs of images.
 fn blocks(exact: &Replicas, approximate: &Replicas) -> Vec<(f64, f64)> {
-    let [exact, approximate] = [exact, approximate].map(|images| images.means_of_blocks(BLOCK));
-    exact
-        .iter()
-        .zip(&approximate)
-        .map(|(exact, approximate)| (approximate.0 - exact.0, exact.1.hypot(approximate.1)))
-        .collect()
+    approximate.changes_of_blocks(exact, BLOCK)
 }
 
 /// How many compensation vertices of a free flight lie where something is lost.

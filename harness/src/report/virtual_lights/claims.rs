@@ -2,9 +2,8 @@
 
 use super::anisotropy::Anisotropy;
 use super::approximations::Approximations;
-use super::clamping::Clamping;
+use super::clamping::{Clamping, LOW_BOUND};
 use super::costs::Costs;
-use super::scenes::BOUND;
 use super::strategies::Strategies;
 use crate::report::replicas::Measured;
 use crate::report::result::{Claim, ClaimVerdict};
@@ -35,7 +34,7 @@ pub(super) fn e1(clamping: &Clamping) -> Claim {
     let words: Vec<String> = clamping
         .stages
         .iter()
-        .map(|stage| format!("{}: {} of the light", stage.name, stage.energy.words(3)))
+        .map(|stage| format!("b = {}, {}: {} of the light", stage.bound, stage.name, stage.energy.words(3)))
         .collect();
     let verdict = match (of("clamped"), of("1 step"), of("2 steps")) {
         (Some(clamped), Some(one), Some(two)) => {
@@ -57,7 +56,7 @@ pub(super) fn e1(clamping: &Clamping) -> Claim {
         (
             verdict,
             format!(
-                "Room with smoke, b = {BOUND}: one step brings back {recovered:.0} % of what clamping loses. How much is lost is a matter of b."
+                "Room with smoke, b = {LOW_BOUND}: one step brings back {recovered:.0} % of what clamping loses. How much is lost is a matter of b."
             ),
         ),
     )
@@ -273,7 +272,7 @@ pub(super) fn summary(
         (clamping.of("clamped"), clamping.of("1 step"), clamping.of("2 steps"))
     {
         summary.push(format!(
-            "Clamping at b = {BOUND} leaves {:.1} % of the light, one step {:.1} %, two steps {:.1} %.",
+            "Clamping at b = {LOW_BOUND} leaves {:.1} % of the light, one step {:.1} %, two steps {:.1} %.",
             100.0 * clamped.energy.value,
             100.0 * one.energy.value,
             100.0 * two.energy.value
