@@ -47,6 +47,8 @@ impl Region {
         let near = match options.visibility {
             Visibility::Full => u64::MAX,
             Visibility::Local => gather.world.surfaces.reaching(center.position, radius),
+            // On a surface the other surface is what matters most (kollig-2004).
+            Visibility::Ignored if center.surface().is_some() => u64::MAX,
             Visibility::Ignored => 0,
         };
         Self { center, bound, radius, near }
@@ -249,15 +251,21 @@ mod tests {
             for bound in [0.0, 1.0, 3.9] {
                 assert_eq!(seen(Visibility::Full, bound), Some(REFLECTANCE));
                 assert_eq!(seen(Visibility::Local, bound), Some(REFLECTANCE));
-                assert_eq!(seen(Visibility::Ignored, bound), None);
+                // A point of a surface sees surfaces whatever is said.
+                assert_eq!(seen(Visibility::Ignored, bound), Some(REFLECTANCE));
             }
             assert_eq!((seen(Visibility::Full, 4.1), seen(Visibility::Local, 4.1)), (None, None));
         }
-        // Ignored, a vertex may lie behind the surface that a free flight would have met.
+        // Ignored, the vertex of a point of the medium may lie behind the surface that a free flight would have met.
         let hazy = hazy(room(0.5));
-        let ignored = CompensationOptions { visibility: Visibility::Ignored, ..EXACT };
-        let placed = place(&hazy, (on_floor(), 0.1), (ignored, SIGMA_T), &up(&[0.5, 0.1])).unwrap();
-        assert!((placed.vertex.position - 2.0 * LN_2 * DVec3::Z).length() < 1e-15);
+        let above = Vertex { position: 0.25 * DVec3::Z, lobe: Lobe::Phase { incident: DVec3::Z } };
+        let reached = |visibility, script: &[f64]| {
+            let options = CompensationOptions { visibility, ..EXACT };
+            let placed = place(&hazy, (above, 0.1), (options, SIGMA_T), script).unwrap();
+            (placed.vertex.position - above.position).length()
+        };
+        assert!((reached(Visibility::Ignored, &[0.0, 0.0, 0.5, 0.1]) - 2.0 * LN_2).abs() < 1e-15);
+        assert_eq!(reached(Visibility::Full, &[0.0, 0.0, 0.5]), 0.25);
     }
 
     #[test]

@@ -63,8 +63,8 @@ pub(super) fn study(run: &Run<'_>) -> Result<Approximations, Failure> {
         50,
     )?;
     visibility.section.text.push(
-        "The room has even smoke (σ_t = 0.6) and a thin screen under the lamp. Where visibility is ignored vertices lie in the medium only, \
-         also behind surfaces; what surfaces would reflect over short distances is missing."
+        "The room has even smoke (σ_t = 0.6) and a thin screen under the lamp, seen from below. Where visibility is ignored the vertices of points \
+         of the medium lie in the medium only, also behind surfaces; what surfaces would reflect over short distances is missing."
             .to_owned(),
     );
     let (inside, counted) = vertices(run)?;

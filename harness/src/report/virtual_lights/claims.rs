@@ -83,12 +83,15 @@ pub(super) fn e2(strategies: &Strategies) -> Claim {
             let comment = format!("The best of each strategy: {}, {}, {}.", one.name, many.name, raab.name);
             match (first, second) {
                 (true, true) => (ClaimVerdict::Holds, comment),
-                (true, false) => (
-                    ClaimVerdict::HoldsUnder,
-                    format!(
-                        "{comment} 1-to-1 is below both others; N-to-1 cannot be told to be below 1-to-N, whose one vertex sees all lights."
-                    ),
-                ),
+                (true, false) => {
+                    let order = if raab.cost.is_below(&many.cost) {
+                        "N-to-1 is above 1-to-N: its vertices cost a flight each, and of the noise of a point little comes from the one vertex \
+                         that sees all lights"
+                    } else {
+                        "N-to-1 cannot be told from 1-to-N"
+                    };
+                    (ClaimVerdict::HoldsUnder, format!("{comment} 1-to-1 is below both others; {order}."))
+                }
                 _ => (ClaimVerdict::DoesNotHold, comment),
             }
         }
@@ -151,8 +154,8 @@ pub(super) fn e4(approximations: &Approximations) -> Claim {
         measured,
         (
             verdict,
-            "Our vertices lie in the medium only where visibility is ignored, so that what surfaces reflect over short distances is missing, \
-             and light of the other side of a thin screen is gathered."
+            "A thin screen under a lamp in even smoke. Points of surfaces see surfaces; for points of the medium vertices lie in the medium \
+             only, also behind surfaces, and what surfaces reflect over short distances is missing."
                 .to_owned(),
         ),
     )
@@ -176,8 +179,8 @@ pub(super) fn e5(costs: &Costs) -> Claim {
         ),
         (
             verdict,
-            "The paper's clamped part is dear because of its shadow maps (60 %); ours is a handful of rectangles. Each step has a connection and \
-             the light of emitters of its own."
+            "The paper's clamped part is dear because of its shadow maps (60 %); ours is a handful of rectangles. Each step has a flight and a \
+             connection of its own."
                 .to_owned(),
         ),
     )
