@@ -17,7 +17,7 @@ pub(super) const COSINES: [f64; 5] = [-0.8, -0.4, 0.0, 0.4, 0.8];
 /// Light paths of a set.
 const PATHS: u32 = 100;
 /// Sets of an image.
-const SETS: u32 = 48;
+const SETS: u32 = 32;
 /// Paths per pixel of the references.
 const REFERENCE: u32 = 2048;
 

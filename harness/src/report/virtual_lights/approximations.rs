@@ -13,7 +13,7 @@ const REPLICAS: u32 = 8;
 /// Light paths of a set.
 const PATHS: u32 = 100;
 /// Sets of an image.
-const SETS: u32 = 160;
+const SETS: u32 = 64;
 /// Paths per pixel of the whole images.
 const REFERENCE: u32 = 512;
 /// Pixels along each side of the blocks over which differences are averaged.

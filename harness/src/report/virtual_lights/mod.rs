@@ -7,11 +7,13 @@ mod clamping;
 mod costs;
 mod reference;
 mod scenes;
+mod sizes;
 mod strategies;
 
 use crate::report::document::{Document, Options};
 use crate::report::run::Run;
 use crate::{Environment, Failure};
+use reference::{ROOM_PATHS, Reference};
 use std::time::Instant;
 
 /// What makes the images of the room neither black nor white.
@@ -20,14 +22,18 @@ const EXPOSURE: f64 = 0.9;
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
     let clock = Instant::now();
-    let steps = strategies::steps()
+    let steps = 1
+        + sizes::steps()
+        + strategies::steps()
         + clamping::steps()
         + approximations::steps()
         + costs::steps()
         + anisotropy::steps();
     let run = Run::new(options, environment, steps);
-    let clamping = clamping::study(&run)?;
-    let strategies = strategies::study(&run)?;
+    let room = Reference::of(&run, &scenes::smoke_room(scenes::side(&run))?, ROOM_PATHS, run.seed(0, 0))?;
+    let clamping = clamping::study(&run, &room)?;
+    let strategies = strategies::study(&run, &room)?;
+    let sizes = sizes::study(&run)?;
     let approximations = approximations::study(&run)?;
     let costs = costs::study(&run)?;
     let anisotropy = anisotropy::study(&run)?;
@@ -38,11 +44,11 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
         options,
         environment.provenance(options.seed),
     );
-    document.summary = claims::summary(&strategies, &clamping, &approximations, &costs);
+    document.summary = claims::summary((&strategies, &sizes), &clamping, &approximations, &costs);
     document.unsound = claims::unsound(&strategies, &clamping, &anisotropy);
     document.claims = vec![
         claims::e1(&clamping),
-        claims::e2(&strategies),
+        claims::e2(&strategies, &sizes),
         claims::e3(&approximations),
         claims::e4(&approximations),
         claims::e5(&costs),
@@ -52,7 +58,7 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
     document.sections = clamping
         .sections
         .into_iter()
-        .chain([strategies.section])
+        .chain([strategies.section, sizes.section])
         .chain(approximations.sections)
         .chain([costs.section, anisotropy.section])
         .collect();

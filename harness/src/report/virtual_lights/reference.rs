@@ -8,6 +8,9 @@ use crate::report::run::Run;
 /// Independent images of the reference: their scatter is its error.
 const REPLICAS: u32 = 4;
 
+/// Paths per pixel of the room with smoke.
+pub(super) const ROOM_PATHS: u32 = 4096;
+
 /// A path-traced image with its error.
 #[derive(Debug)]
 pub(super) struct Reference {
