@@ -60,12 +60,15 @@ pub fn measure<G: Field, E: Estimator<G>>(
     in_batches(draws.samples, advance, &|index, values| one_batch(lawful, draws, index, values, place))
 }
 
+/// What draws a batch by its number, into a buffer of estimates.
+type DrawBatch<'a> = dyn Fn(u64, &mut Vec<f64>) -> Result<Batch, Failure> + Sync + 'a;
+
 /// Draws all batches on the threads of the current pool, and puts them together in their order. One copy for all estimators: a call
 /// per batch costs nothing.
 fn in_batches(
     samples: u64,
     advance: &(dyn Fn(u64) + Sync),
-    draw: &(dyn Fn(u64, &mut Vec<f64>) -> Result<Batch, Failure> + Sync),
+    draw: &DrawBatch<'_>,
 ) -> Result<Measurement, Failure> {
     let batches = batch_count(samples);
     let mut moments = Moments::new();

@@ -144,6 +144,9 @@ impl<C> IntegratorJob<C> for Fits {
     fn run<I: TileIntegrator<C>>(self, _integrator: I) {}
 }
 
+/// What draws a tile: the sum of its samples, and what they cost.
+type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> Result<(f64, Spent), Failure> + Sync + 'a;
+
 /// The volume of a tile, observed.
 pub(super) type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a AnyPhase, C>;
 
@@ -261,7 +264,7 @@ impl<C: Spectrum> Draw<'_, C> {
         &self,
         tiles: &mut [Tile<C>],
         samples: u32,
-        tile: &(dyn Fn(&mut Tile<C>) -> Result<(f64, Spent), Failure> + Sync),
+        tile: &DrawTile<'_, C>,
     ) -> Result<Vec<(f64, Spent)>, Failure> {
         // A tile behind the first failure is not drawn; one before it is, since it might fail too.
         let first_failure = AtomicUsize::new(usize::MAX);

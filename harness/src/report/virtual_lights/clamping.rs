@@ -15,7 +15,7 @@ const REPLICAS: u32 = 8;
 /// Light paths of a set.
 const PATHS: u32 = 100;
 /// Light paths of the set whose splotches are shown, and points per eye ray.
-const FEW_PATHS: u32 = 30;
+const SPLOTCH_PATHS: u32 = 200;
 const EYE_SAMPLES: u32 = 48;
 /// Sets of an image.
 const SETS: u32 = 32;
@@ -101,7 +101,7 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
     let subject = scenes::cloud(run.quick_or(24, 48))?;
     let reference = Reference::of(run, &subject, REFERENCE, run.seed(20, 0))?;
     let exposure = 3.0;
-    let paths = FEW_PATHS;
+    let paths = SPLOTCH_PATHS;
     let energy = |images: &Replicas| images.mean_of_images().0 / reference.mean.0;
     let mut pictures = vec![picture(
         "splotches-reference",
@@ -114,7 +114,7 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
         [("unbounded", "unbounded lights", Value::Null), ("clamped", "clamped", json!(LOW_BOUND))]
     {
         let one_set = subject.with("integrator", lights(paths, EYE_SAMPLES, &clamp));
-        let images = one_set.measure(1, (run.seed(21, 0), 2), &run.media)?;
+        let images = one_set.measure(1, (run.seed(21, 0), 4), &run.media)?;
         let lines = vec![format!("{:.0} % of the light", 100.0 * energy(&images))];
         pictures.push(picture(&format!("splotches-{id}"), name, lines, &images, exposure));
         run.advance();
@@ -127,7 +127,7 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
     section.galleries.push(Gallery {
         id: "splotches-images".to_owned(),
         title: "The same cloud three times".to_owned(),
-        caption: "Two sets each are averaged for the share of the light; one is shown.".to_owned(),
+        caption: "Four sets each are averaged for the share of the light; one is shown.".to_owned(),
         rows: vec![GalleryRow { label: String::new(), pictures }],
     });
     Ok(section)
