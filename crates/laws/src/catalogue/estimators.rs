@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Samples of a quick run: of a walk that survives every collision (its law is known in full); and of one that ends, whose
 /// look-ups have a skewed law of which only the mean is known: a skewness of 2 needs 3.5e5 of them.
 const SURVIVING: u64 = 80_000;
-pub(super) const ENDING: u64 = 400_000;
+pub(super) const ENDING: u64 = 500_000;
 
 /// A control and a sampling extinction.
 type Tracker<C, R> = Tracking<DoubleParticle, C, R>;
