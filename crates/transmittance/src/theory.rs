@@ -19,6 +19,21 @@ pub struct Theory {
     pub lookups: f64,
 }
 
+impl Theory {
+    /// An unbiased estimate of which no moment beyond the mean has a closed form; `lookups` is NaN where their number has none
+    /// either.
+    #[must_use]
+    pub fn mean_only(lookups: f64) -> Self {
+        Self {
+            relative_mean: 1.0,
+            relative_central: [f64::NAN; HIGHEST_MOMENT - 1],
+            log_relative_variance: f64::NAN,
+            relative_variance_error: f64::NAN,
+            lookups,
+        }
+    }
+}
+
 /// An estimator whose law is known in closed form, up to quadrature over the ray.
 pub trait ClosedForm<F: Extinction> {
     /// Moments and expected look-ups on the profile of `quadrature`, whose transmittance is exp(−`optical_thickness`).
