@@ -36,6 +36,7 @@ mod combs;
 mod estimator;
 mod explorers;
 mod factors;
+mod hybrid;
 mod jittered_law;
 mod jittered_ratio;
 mod line_integral;
@@ -59,6 +60,7 @@ pub use combs::{
 pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
 pub use factors::FactorLaw;
+pub use hybrid::{Choice, Experience, Forecast, Hybrid, Pilot};
 pub use jittered_ratio::{EpsilonError, JitteredRatio, JitteredRatioInCells};
 pub use line_integral::{LineIntegral, NoSplits, Starts};
 pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
