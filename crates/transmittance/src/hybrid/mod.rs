@@ -7,8 +7,8 @@ pub use experience::Experience;
 pub use pilot::Pilot;
 
 use crate::{
-    ClosedForm, Comb, CombShape, JitteredRatio, Roulette, Theory, TransmittanceEstimator, UnbiasedRayMarching,
-    predicted_relative_variance, teeth_for,
+    ClosedForm, Comb, CombShape, JitteredRatio, Roulette, Theory, TransmittanceEstimator,
+    UnbiasedRayMarching, predicted_relative_variance, teeth_for,
 };
 use fairflight_media::{Breakpoints, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -112,9 +112,10 @@ impl Hybrid {
             let hybrid = Self::of(candidate, experience, length, (depth, teeth))?;
             (hybrid.forecast.lookups <= most).then_some(hybrid)
         });
-        candidates
-            .min_by(|a, b| a.forecast.price().total_cmp(&b.forecast.price()))
-            .unwrap_or_else(|| Self { choice: Choice::Jittered(strata(CAUTIOUS)), forecast: jittered_cost(depth, CAUTIOUS) })
+        candidates.min_by(|a, b| a.forecast.price().total_cmp(&b.forecast.price())).unwrap_or_else(|| Self {
+            choice: Choice::Jittered(strata(CAUTIOUS)),
+            forecast: jittered_cost(depth, CAUTIOUS),
+        })
     }
 
     /// A candidate with its forecast; `None` where there is no experience, or the law ends by which it could be forecast.
@@ -130,8 +131,9 @@ impl Hybrid {
         if pilots.is_empty() {
             return None;
         }
-        let geometric_mean =
-            |variance: &dyn Fn(&Pilot) -> f64| (pilots.iter().map(|pilot| variance(pilot).max(ROUNDING).ln()).sum::<f64>() / count).exp();
+        let geometric_mean = |variance: &dyn Fn(&Pilot) -> f64| {
+            (pilots.iter().map(|pilot| variance(pilot).max(ROUNDING).ln()).sum::<f64>() / count).exp()
+        };
         if let Candidate::Jittered { index } = candidate {
             let relative_variance = geometric_mean(&on_this_ray);
             let forecast = Forecast { relative_variance, ..jittered_cost(depth, index) };

@@ -174,7 +174,8 @@ mod tests {
     fn in_noise_finer_combs_gain_what_they_cost() {
         let mut source = Seeded::new(3);
         let edges = (0..=4000).map(|i| f64::from(i) * 0.005).collect();
-        let noise = PiecewiseConstant::new(edges, (0..4000).map(|_| source.next_uniform()).collect()).unwrap();
+        let noise =
+            PiecewiseConstant::new(edges, (0..4000).map(|_| source.next_uniform()).collect()).unwrap();
         let pilot = Pilot::of(&noise, &mut source);
         for i in 1..FINENESSES {
             let ratio = pilot.apart[i - 1] / pilot.apart[i];
