@@ -117,7 +117,7 @@ fn the_page_needs_no_network_and_its_links_lead_somewhere() {
     );
     assert!(!page.contains("not sound"));
     let seen = "aria-label=\"The best of five. Heat map of which of Woodcock; ";
-    assert!(page.contains(seen) && page.contains("; jittered ratio; telescoping, over transmittance T [1]"));
+    assert!(page.contains(seen) && page.contains("; jittered ratio, over transmittance T [1]"));
     assert!(page.contains("lower left &lt;corner&gt;"));
 }
 

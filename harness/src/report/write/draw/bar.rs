@@ -2,7 +2,7 @@
 
 use super::super::colour_map::{LEVELS, sequential};
 use super::canvas::{Canvas, Drawn, Stroke, Text};
-use super::{Axis, INK, Rect};
+use super::{Axis, INK, Rect, tile};
 use plotters::backend::DrawingBackend;
 
 /// How far the title is right of a bar.
@@ -33,9 +33,10 @@ impl ColourBar<'_> {
         let (foot, head) = (bottom - below, top + above);
         let middle = f64::midpoint(left, right);
         let at = |fraction: f64| foot - fraction * (foot - head);
-        for level in 0..LEVELS {
-            let [from, to] = [level, level + 1].map(|level| at(f64::from(level) / f64::from(LEVELS)));
-            canvas.area(&[(left, to), (right, to), (right, from), (left, from)], sequential(level), 1.0)?;
+        // From the highest on, each down to the foot: between rectangles that only meet, the ground would shine through.
+        for level in (0..LEVELS).rev() {
+            let top = at(f64::from(level + 1) / f64::from(LEVELS));
+            tile(canvas, Rect { left, top, right, bottom: foot }, sequential(level))?;
         }
         // The outline runs around the tips.
         let mut outline = vec![(left, foot)];

@@ -2,7 +2,7 @@
 
 use super::super::super::draw::{Point, Rect};
 
-/// A shorter line has no label.
+/// A shorter line has no label; nor has a ring of less than twice the length, which it would hide.
 const SHORTEST: f64 = 80.0;
 /// Between places that are tried, in pixels along the line.
 const STEP: f64 = 4.0;
@@ -26,8 +26,15 @@ impl Labelled {
         Rect { left: x - width, top: y - height, right: x + width, bottom: y + height }
     }
 
+    fn is_long(&self) -> bool {
+        let ring = self.points.first() == self.points.last();
+        let least = if ring { 2.0 * SHORTEST } else { SHORTEST };
+        let length = |pair: &[Point]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
+        self.points.windows(2).map(length).sum::<f64>() >= least
+    }
+
     /// Points a step apart.
-    fn steps(&self) -> Vec<Point> {
+    pub(super) fn steps(&self) -> Vec<Point> {
         let mut steps = Vec::new();
         for pair in self.points.windows(2) {
             let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
@@ -46,8 +53,7 @@ impl Labelled {
 /// among these where it covers least of other lines, and near the middle. Long lines choose first.
 pub(super) fn place(lines: &[Labelled], frame: Rect, mut taken: Vec<Rect>) -> Vec<(&Labelled, Point)> {
     let steps: Vec<Vec<Point>> = lines.iter().map(Labelled::steps).collect();
-    let mut order: Vec<usize> =
-        (0..lines.len()).filter(|&k| steps[k].len() as f64 * STEP >= SHORTEST).collect();
+    let mut order: Vec<usize> = (0..lines.len()).filter(|&k| lines[k].is_long()).collect();
     order.sort_by_key(|&k| std::cmp::Reverse(steps[k].len()));
     let mut placed = Vec::new();
     for k in order {
@@ -133,7 +139,11 @@ mod tests {
 
     #[test]
     fn short_lines_and_lines_without_room_have_none() {
-        let lines = [line(&[(100.0, 100.0), (140.0, 100.0)]), line(&[(0.0, 3.0), (300.0, 3.0)])];
+        let lines = [
+            line(&[(100.0, 100.0), (140.0, 100.0)]),
+            line(&[(0.0, 3.0), (300.0, 3.0)]),
+            line(&[(100.0, 100.0), (130.0, 100.0), (130.0, 130.0), (100.0, 130.0), (100.0, 100.0)]),
+        ];
         assert!(place(&lines, FRAME, Vec::new()).is_empty());
     }
 }

@@ -14,6 +14,7 @@ const MARGIN: f64 = 4.0;
 const PLATE: f64 = 24.0;
 
 /// All lines of a panel, in pixels.
+#[derive(Default)]
 pub(super) struct Lines {
     lines: Vec<Labelled>,
 }
@@ -31,6 +32,11 @@ impl Lines {
             }
         }
         Self { lines }
+    }
+
+    /// Points along all lines.
+    pub(super) fn points(&self) -> Vec<Point> {
+        self.lines.iter().flat_map(Labelled::steps).collect()
     }
 
     /// Draws the lines, then the labels where they cover no other line, nor what is taken.

@@ -242,13 +242,15 @@ impl Draw for Figure<'_> {
             let panel = Panel { rect, x: x.clone(), y: y.clone() };
             panel.ticks(canvas, labels, layout.ticks())?;
             self.cells(canvas, &panel, it)?;
+            let lines = match self.levels() {
+                Some((axis, levels)) if !it.numbers.is_empty() => Lines::of(&panel, it, axis, levels),
+                _ => Lines::default(),
+            };
             let mut taken = Vec::new();
             if let Content::Names { .. } = self.map.content {
-                taken = regions::draw(canvas, &panel, it, |kind| self.colour(kind))?;
+                taken = regions::draw(canvas, &panel, it, &lines.points(), |kind| self.colour(kind))?;
             }
-            if let (Some((axis, levels)), false) = (self.levels(), it.numbers.is_empty()) {
-                Lines::of(&panel, it, axis, levels).draw(canvas, &panel, taken)?;
-            }
+            lines.draw(canvas, &panel, taken)?;
             panel.frame(canvas)?;
             panel.heading(canvas, it.label)?;
         }

@@ -7,18 +7,21 @@ use plotters::backend::DrawingBackend;
 
 /// A region whose widest place is less from its middle to its border, in pixels, has no number.
 const ROOM: f64 = 15.0;
+/// Places whose room differs by less, in pixels, are equal.
+const EQUAL: f64 = 2.0;
 const BORDER: Stroke = Stroke::solid((255, 255, 255), 2.0);
 
-/// Draws the borders and the numbers; returns where these are.
+/// Draws the borders, and the numbers where they cover no point of a line if that can be; returns where these are.
 pub(super) fn draw<DB: DrawingBackend>(
     canvas: &Canvas<DB>,
     panel: &Panel,
     it: &PanelOf<'_>,
+    lines: &[Point],
     colour: impl Fn(usize) -> Rgb,
 ) -> Result<Vec<Rect>, String> {
     borders(canvas, panel, it)?;
     let mut taken = Vec::new();
-    for (kind, (x, y)) in numbers(panel, it) {
+    for (kind, (x, y)) in numbers(panel, it, lines) {
         numbered(canvas, (x, y), kind + 1, colour(kind))?;
         taken.push(Rect { left: x - ROOM, top: y - ROOM, right: x + ROOM, bottom: y + ROOM });
     }
@@ -40,8 +43,9 @@ fn borders<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, it: &PanelOf<
     Ok(())
 }
 
-/// The number of each region that has room for it, and where: the place farthest from its border.
-fn numbers(panel: &Panel, it: &PanelOf<'_>) -> Vec<(usize, Point)> {
+/// The number of each region that has room for it, and where: the place farthest from its border and from lines, and of equal ones the
+/// nearest to its middle.
+fn numbers(panel: &Panel, it: &PanelOf<'_>, lines: &[Point]) -> Vec<(usize, Point)> {
     let columns = it.plane.columns();
     let place = |k: usize| it.plane.rect(panel, [k % columns, k % columns + 1], k / columns);
     let rects: Vec<Option<Rect>> = (0..it.cells.len()).map(place).collect();
@@ -62,13 +66,23 @@ fn numbers(panel: &Panel, it: &PanelOf<'_>) -> Vec<(usize, Point)> {
             let centre = (f64::midpoint(rect.left, rect.right), f64::midpoint(rect.top, rect.bottom));
             [centre, (rect.right, rect.top)]
         });
-        let best = candidates
-            .map(|at| (clearance(at), at))
-            .reduce(|best, other| if other.0 > best.0 { other } else { best });
-        if let Some((room, at)) = best.filter(|(room, _)| *room >= ROOM) {
-            debug_assert!(room.is_finite(), "the frame is a border");
-            numbers.push((kind, at));
-        }
+        let candidates: Vec<(f64, Point)> = candidates.map(|at| (clearance(at), at)).collect();
+        let apart = |a: Point, b: Point| (a.0 - b.0).hypot(a.1 - b.1);
+        let from_lines = |at: Point| lines.iter().map(|&line| apart(line, at)).fold(f64::INFINITY, f64::min);
+        let off_lines: Vec<(f64, Point)> =
+            candidates.iter().map(|&(room, at)| (room.min(from_lines(at)), at)).collect();
+        let count = candidates.len() as f64;
+        let middle = (
+            candidates.iter().map(|(_, at)| at.0).sum::<f64>() / count,
+            candidates.iter().map(|(_, at)| at.1).sum::<f64>() / count,
+        );
+        let best = [off_lines, candidates].iter().find_map(|candidates| {
+            let most = candidates.iter().map(|(room, _)| *room).fold(0.0, f64::max);
+            let widest = candidates.iter().filter(|(room, _)| *room >= most - EQUAL).map(|(_, at)| *at);
+            let nearest = widest.min_by(|a, b| apart(*a, middle).total_cmp(&apart(*b, middle)));
+            nearest.filter(|_| most >= ROOM)
+        });
+        numbers.extend(best.map(|at| (kind, at)));
     }
     numbers
 }
@@ -135,10 +149,17 @@ mod tests {
         let it = PanelOf { label: "", plane, numbers: Vec::new(), cells };
         let rect = Rect { left: 0.0, top: 0.0, right: 200.0, bottom: 200.0 };
         let panel = Panel { rect, x: Axis::exactly("", 0.0, 1.0), y: Axis::exactly("", 0.0, 1.0) };
-        let numbers = numbers(&panel, &it);
-        let first = numbers.iter().find(|number| number.0 == 0).unwrap().1;
-        assert!((first.0 - 60.0).abs() < 1e-9 && (first.1 - 140.0).abs() < 1e-9, "{first:?}");
-        // The piece below the arm is 40 pixels high; the greater one has a number too.
-        assert_eq!(numbers.iter().filter(|number| number.0 == 1).count(), 2);
+        let first = |lines: &[Point]| {
+            let numbers = numbers(&panel, &it, lines);
+            numbers.iter().find(|number| number.0 == 0).unwrap().1
+        };
+        let at = first(&[]);
+        assert!((at.0 - 60.0).abs() < 1e-9 && (at.1 - 140.0).abs() < 1e-9, "{at:?}");
+        let line: Vec<Point> = (0..=20).map(|k| (62.0, 10.0 * f64::from(k))).collect();
+        let off = first(&line);
+        assert!((off.0 - 62.0).abs() >= ROOM && off.0 < 120.0 && off.1 > 80.0, "{off:?}");
+        // The piece below the arm is 40 pixels high: wide enough for a number of its own.
+        let others = numbers(&panel, &it, &[]);
+        assert_eq!(others.iter().filter(|number| number.0 == 1).count(), 2);
     }
 }
