@@ -51,6 +51,16 @@ pub enum FieldError {
         /// The first entry.
         found: f64,
     },
+    /// Cells do not end where the profile does.
+    #[error("{what} must end at {length}, the end of the profile, found {found}")]
+    NotAtEnd {
+        /// The parameter.
+        what: &'static str,
+        /// The length of the profile.
+        length: f64,
+        /// Where the last one ends.
+        found: f64,
+    },
     /// Two lists do not fit together.
     #[error("{what} needs {expected} entries, found {found}")]
     LengthMismatch {

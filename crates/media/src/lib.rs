@@ -11,6 +11,7 @@
 //! | [`OpticalThickness`] | ∫ σ_t ds in closed form |
 //! | [`InvertOpticalThickness`] | the distance at which an optical thickness is reached, in closed form |
 //! | [`Cells`] | where one cubic ends and the next begins |
+//! | [`BoundedInCells`] | both bounds in each of many cells |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
@@ -18,6 +19,7 @@
 //! estimator.
 
 mod analytic_cosine;
+mod bound_cells;
 mod bounded;
 mod bounds;
 mod cells;
@@ -42,6 +44,7 @@ mod voxels;
 mod watched;
 
 pub use analytic_cosine::AnalyticCosine;
+pub use bound_cells::{BoundCell, BoundedInCells, InCells};
 pub use bounded::Bounded;
 pub use bounds::{Bounds, Clip};
 pub use cells::{Cells, LineCells};

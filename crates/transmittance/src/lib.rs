@@ -9,6 +9,9 @@
 //! | [`Woodcock`] | raab-2008 algorithm 1 | a majorant |
 //! | [`Tracking`] with the double particle model | szirmay-kalos-2017 4.2 | nothing (ratio and residual ratio tracking are special cases) |
 //! | [`Tracking`] with the single particle model | szirmay-kalos-2017 eq. 9 | the domain of its version |
+//! | [`ResidualCells`] | novak-2014, in cells | bounds in cells |
+//! | [`JitteredRatio`] | ours | a majorant; estimates in \[0, 1\] |
+//! | [`JitteredRatioInCells`] | ours | bounds in cells; estimates in \[0, 1\] where σ_t ≥ 0 |
 //! | [`LineIntegral`] | raab-2008 algorithm 2 | a majorant |
 //! | [`Regular`] | the integral itself | a closed-form optical thickness |
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
@@ -29,23 +32,39 @@
 //! assert!((mean - (-3.0_f64).exp()).abs() < 0.004);
 //! ```
 
+mod combs;
 mod estimator;
 mod explorers;
+mod factors;
+mod jittered_law;
+mod jittered_ratio;
 mod line_integral;
 mod product_law;
 mod ray_marching;
 mod regular;
+mod residual_cells;
 mod signed_product;
 mod theory;
 mod tracking;
 mod woodcock;
 
+#[cfg(test)]
+mod seed_ray_tests;
+
+pub use combs::{
+    Comb, CombCumulants, CombLookups, CombShape, Jackknife, NoSegments, NoTeeth, Prepared, Roulette,
+    RouletteError, RunningCumulant, SymmetricMeans, Telescoping, TelescopingError, UnbiasedRayMarching,
+    expected_order, predicted_naive_bias, predicted_relative_variance, teeth_for,
+};
 pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
+pub use factors::FactorLaw;
+pub use jittered_ratio::{EpsilonError, JitteredRatio, JitteredRatioInCells};
 pub use line_integral::{LineIntegral, NoSplits, Starts};
 pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
 pub use ray_marching::{NoSteps, Offset, RayMarching};
 pub use regular::Regular;
+pub use residual_cells::{RateError, ResidualCells};
 pub use signed_product::SignedProduct;
 pub use theory::{ClosedForm, Theory};
 pub use tracking::Tracking;
