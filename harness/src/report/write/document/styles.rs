@@ -135,4 +135,16 @@ mod tests {
         assert_eq!(at(1), look(Series::DoubleParticle).style());
         assert!(at(0) != at(1) && at(2) != at(1) && at(0) != at(2));
     }
+
+    #[test]
+    fn a_name_in_a_heat_map_has_the_colour_of_its_curve() {
+        let document = super::super::fixture::document();
+        let styles = Styles::of(&document);
+        assert_eq!(styles.colour("spectral"), styles.style(&Curve::method("spectral")).colour);
+        let names = heat_map::names_in(&document.sections[0].heat_maps[1]);
+        assert!(names.len() > 3);
+        for (k, name) in names.iter().enumerate() {
+            assert!(names[..k].iter().all(|other| styles.colour(other) != styles.colour(name)), "{name}");
+        }
+    }
 }

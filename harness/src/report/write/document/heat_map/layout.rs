@@ -100,3 +100,24 @@ impl Layout {
         [WIDTH, (self.foot() + self.legend + 16.0) as u32]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_keep_apart_and_every_column_has_labels_at_its_foot() {
+        for panels in 1..=12 {
+            let layout = Layout { panels, headed: true, bar: true, legend: 36.0 };
+            let (rects, labels): (Vec<Rect>, Vec<Labels>) = (0..panels).map(|k| layout.panel(k)).unzip();
+            let bar = layout.bar().unwrap();
+            for (k, rect) in rects.iter().enumerate() {
+                assert!(rect.right < bar.left && rect.bottom <= bar.bottom + 1e-9);
+                assert!(rects[..k].iter().all(|other| !other.touches(rect)), "{panels}");
+                let lowest = rects[k + 1..].iter().all(|other| other.left != rect.left);
+                assert_eq!(lowest, matches!(labels[k], Labels::Both | Labels::XOnly), "{panels}, {k}");
+            }
+            assert!(bar.right + ColourBar::ROOM <= f64::from(layout.size()[0]));
+        }
+    }
+}

@@ -3,8 +3,8 @@
 use super::super::super::draw::{Canvas, Drawn, Horizontal, Panel, Point, Rect, Stroke, Text};
 use super::super::super::number::terse;
 use super::super::chart::on;
-use super::PanelOf;
 use super::labels::{Labelled, place};
+use super::panels::PanelOf;
 use crate::report::document::Axis;
 use plotters::backend::DrawingBackend;
 

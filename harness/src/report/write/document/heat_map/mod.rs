@@ -3,6 +3,7 @@
 mod labels;
 mod layout;
 mod lines;
+mod panels;
 mod plane;
 mod regions;
 mod table;
@@ -13,12 +14,12 @@ use super::super::draw::{Axis, Canvas, ColourBar, Draw, Drawing, Drawn, Legend, 
 use super::super::draw::{Text, both, hatched, tile};
 use super::super::figure::{LEGEND_LEFT, LEGEND_WIDTH};
 use super::super::{colour_map, png};
-use super::chart::{DECADES, on};
+use super::chart::on;
 use super::styles::Styles;
 use crate::report::document::{self, Content, HeatMap, Numbers, Scale};
 use layout::Layout;
 use lines::Lines;
-use plane::Plane;
+use panels::{PanelOf, Shown, colours, panels};
 use plotters::backend::DrawingBackend;
 
 /// A heat map on its way into files and the page.
@@ -44,86 +45,6 @@ pub(super) fn names_in(map: &HeatMap) -> Vec<&str> {
     let Content::Names { names, panels, .. } = &map.content else { return Vec::new() };
     let used = |k: &usize| panels.iter().any(|panel| panel.values.contains(&Some(*k)));
     (0..names.len()).filter(used).map(|k| &*names[k]).collect()
-}
-
-/// What a cell shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Shown {
-    Missing,
-    /// A level of the colour map, or the place of a name.
-    Kind(usize),
-}
-
-/// A panel on its way onto the canvas: values in units of drawn axes, NaN for what is missing.
-struct PanelOf<'a> {
-    label: &'a str,
-    plane: Plane,
-    /// The values, or the numbers beside the names.
-    numbers: Vec<f64>,
-    cells: Vec<Shown>,
-}
-
-/// The colour axis, if there is one.
-fn colours(map: &HeatMap) -> Option<Axis> {
-    let Content::Values { colours, panels, .. } = &map.content else { return None };
-    let [low, high] = match colours.range {
-        Some(range) => range.map(|end| on(colours, end)),
-        None => {
-            let values = panels.iter().flat_map(|panel| &panel.values).filter_map(|value| *value);
-            let finite = values.map(|value| on(colours, value)).filter(|value| value.is_finite());
-            let [low, high] =
-                finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-            match colours.scale {
-                _ if low > high => [0.0, 1.0],
-                Scale::Linear => [low, high],
-                Scale::Logarithmic => [low.max(high - DECADES), high],
-            }
-        }
-    };
-    Some(match colours.scale {
-        Scale::Linear => Axis::exactly(&colours.title, low, high),
-        Scale::Logarithmic => Axis::exactly_logarithmic(&colours.title, low, high),
-    })
-}
-
-fn drawn(axis: &document::Axis, values: &[Option<f64>]) -> Vec<f64> {
-    values.iter().map(|value| value.map_or(f64::NAN, |value| on(axis, value))).collect()
-}
-
-fn panels(map: &HeatMap) -> Vec<PanelOf<'_>> {
-    let plane = |x: &[f64], y: &[f64]| Plane::new((&map.x, x), (&map.y, y));
-    match &map.content {
-        Content::Values { colours: axis, panels, .. } => {
-            let scale = colours(map);
-            let level = |value: f64| {
-                let fraction = scale.as_ref().map_or(0.0, |scale| scale.fraction(value));
-                Shown::Kind(usize::from(colour_map::level(fraction)))
-            };
-            let of = |panel: &'_ document::Panel<Option<f64>>| {
-                let numbers = drawn(axis, &panel.values);
-                let cells =
-                    numbers.iter().map(|&x| if x.is_nan() { Shown::Missing } else { level(x) }).collect();
-                (plane(&panel.x, &panel.y), numbers, cells)
-            };
-            panels
-                .iter()
-                .map(|panel| {
-                    let (plane, numbers, cells) = of(panel);
-                    PanelOf { label: &panel.label, plane, numbers, cells }
-                })
-                .collect()
-        }
-        Content::Names { panels, numbers, .. } => panels
-            .iter()
-            .enumerate()
-            .map(|(k, panel)| PanelOf {
-                label: &panel.label,
-                plane: plane(&panel.x, &panel.y),
-                numbers: numbers.as_ref().map_or_else(Vec::new, |it| drawn(&it.axis, &it.panels[k])),
-                cells: panel.values.iter().map(|name| name.map_or(Shown::Missing, Shown::Kind)).collect(),
-            })
-            .collect(),
-    }
 }
 
 struct Figure<'a> {

@@ -2,7 +2,7 @@
 
 use super::super::super::draw::{Panel, Rect, isolines};
 use super::super::chart::on;
-use super::Shown;
+use super::panels::Shown;
 use crate::report::document::Axis;
 
 /// Overlap of neighbours in pixels: a renderer that smooths edges would let the ground shine through between them.

@@ -2,7 +2,7 @@
 
 use super::super::super::draw::{Canvas, Drawn, Panel, Point, Rect, Stroke, numbered};
 use super::super::super::palette::Rgb;
-use super::{PanelOf, Shown};
+use super::panels::{PanelOf, Shown};
 use plotters::backend::DrawingBackend;
 
 /// A region whose widest place is less from its middle to its border, in pixels, has no number.

@@ -46,7 +46,7 @@ pub(super) fn csv(map: &HeatMap) -> String {
 pub(in super::super) fn summary(map: &HeatMap) -> (Vec<String>, Vec<Vec<String>>) {
     match &map.content {
         Content::Values { colours, panels, .. } => {
-            let place = |end: &str| format!("at {} | {} ({end})", map.x.title, map.y.title);
+            let place = |end: &str| format!("at {}, {} ({end})", map.x.title, map.y.title);
             let header = vec![
                 "panel".to_owned(),
                 format!("least {}", colours.title),
@@ -94,7 +94,7 @@ fn extremes(panel: &Panel<Option<f64>>) -> Vec<String> {
     let (Some(least), Some(greatest)) = (cells.first(), cells.last()) else {
         return [&panel.label, "—", "—", "—", "—", "—", &*missing].map(str::to_owned).to_vec();
     };
-    let place = |cell: &(f64, f64, f64)| format!("{} | {}", short(cell.0), short(cell.1));
+    let place = |cell: &(f64, f64, f64)| format!("{}, {}", short(cell.0), short(cell.1));
     let middle = (cells[(cells.len() - 1) / 2].2, cells[cells.len() / 2].2);
     vec![
         panel.label.clone(),
