@@ -13,9 +13,9 @@ pub struct HeatMap {
     pub title: String,
     /// What is seen, with its numbers. The colour bar or the legend says what the colours are.
     pub caption: String,
-    /// The horizontal axis of all panels. Without a range it shows all cells.
+    /// The horizontal axis of all panels. Without a range it reaches from the first centre to the last, and shows half of their cells.
     pub x: Axis,
-    /// The vertical axis of all panels. Without a range it shows all cells.
+    /// The vertical axis of all panels, likewise.
     pub y: Axis,
     /// What is in the cells.
     pub content: Content,
