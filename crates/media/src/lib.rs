@@ -12,6 +12,7 @@
 //! | [`InvertOpticalThickness`] | the distance at which an optical thickness is reached, in closed form |
 //! | [`Cells`] | where one cubic ends and the next begins |
 //! | [`BoundedInCells`] | both bounds in each of many cells |
+//! | [`IntervalBounds`] | both bounds between any two distances, hence in cells |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
@@ -31,6 +32,7 @@ mod extinction;
 mod gradient_noise;
 mod homogeneous;
 mod inside;
+mod interval_bounds;
 mod lattice_planes;
 mod medium;
 mod observed;
@@ -56,6 +58,7 @@ pub use extinction::{
     Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
 };
 pub use homogeneous::Homogeneous;
+pub use interval_bounds::IntervalBounds;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
 pub use observed::Observed;
 pub use perlin::{Perlin, PerlinParameters};
