@@ -67,7 +67,7 @@ impl JitteredFlight {
     #[inline]
     fn strata<F: Majorant>(&self, field: &F) -> (f64, f64) {
         let (length, thickness) = (field.length(), field.majorant() * field.length());
-        if !(thickness > 0.0) {
+        if thickness <= 0.0 {
             return (0.0, length);
         }
         let count = (thickness / self.epsilon).ceil().max(1.0);

@@ -120,7 +120,7 @@ impl Strata {
     pub(crate) fn of(cell: &BoundCell, from: f64, epsilon: f64) -> Self {
         let width = cell.to - from;
         let thickness = cell.range() * width;
-        if !(thickness > 0.0) {
+        if thickness <= 0.0 {
             return Self { count: 0.0, width, thickness: 0.0 };
         }
         let count = (thickness / epsilon).ceil().max(1.0);
