@@ -32,6 +32,7 @@
 //! assert!((mean - (-3.0_f64).exp()).abs() < 0.004);
 //! ```
 
+mod combs;
 mod estimator;
 mod explorers;
 mod factors;
@@ -50,6 +51,11 @@ mod woodcock;
 #[cfg(test)]
 mod seed_ray_tests;
 
+pub use combs::{
+    Comb, CombCumulants, CombLookups, CombShape, Jackknife, NoSegments, NoTeeth, Prepared, Roulette,
+    RouletteError, RunningCumulant, SymmetricMeans, Telescoping, TelescopingError, UnbiasedRayMarching,
+    expected_order, predicted_naive_bias, predicted_relative_variance, teeth_for,
+};
 pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
 pub use factors::FactorLaw;

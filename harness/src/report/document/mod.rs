@@ -1,14 +1,16 @@
-//! A report as a document: sections of text, charts, tables and pictures, whatever was studied.
+//! A report as a document: sections of text, charts, heat maps, tables and pictures, whatever was studied.
 //!
 //! A study fills a [`Document`]; one set of writers turns any of them into files. The standard report has a structure of its own,
 //! because its figures share one sweep.
 
 mod chart;
 mod gallery;
+mod heat_map;
 mod table;
 
 pub use chart::{Axis, Band, Chart, Curve, Mark, Point, Role, Scale, Vertical};
 pub use gallery::{Gallery, GalleryRow, Picture, Pixels};
+pub use heat_map::{Content, HeatMap, Numbers, Panel};
 pub use table::{Cell, Column, Table};
 
 use super::result::Claim;
@@ -70,9 +72,9 @@ impl Document {
     }
 }
 
-/// A part of a document: its text first, then its charts, tables and galleries.
+/// A part of a document: its text first, then its charts, heat maps, tables and galleries.
 ///
-/// The ids of sections, charts, tables, galleries and pictures are names of files and places in the page: lower case letters,
+/// The ids of sections, charts, heat maps, tables, galleries and pictures are names of files and places in the page: lower case letters,
 /// digits, hyphens and points, each once in a document.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Section {
@@ -84,6 +86,8 @@ pub struct Section {
     pub text: Vec<String>,
     /// Drawings.
     pub charts: Vec<Chart>,
+    /// Drawings whose cells are coloured.
+    pub heat_maps: Vec<HeatMap>,
     /// Tables.
     pub tables: Vec<Table>,
     /// Pictures.
