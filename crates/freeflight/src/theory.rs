@@ -88,19 +88,32 @@ pub(crate) fn lookups_of_a_walk<F: Extinction>(
 
 /// E\[P^k\] and E\[(1 + P)^k\], k = 1 … 8, of a Poisson variate P of this mean: the second by the binomial theorem, and
 /// E\[P^(k+1)\] = mean · E\[(1 + P)^k\].
-fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHEST_MOMENT]) {
-    let mut raw = [1.0; HIGHEST_MOMENT + 2];
-    raw[1] = mean;
-    let mut one_more = [0.0; HIGHEST_MOMENT];
+pub(crate) fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHEST_MOMENT]) {
+    let mut raw = [0.0; HIGHEST_MOMENT];
+    let mut next = [0.0; HIGHEST_MOMENT];
+    raw[0] = mean;
     for k in 1..=HIGHEST_MOMENT {
-        let mut binomial = 1.0;
-        for (j, moment) in raw[..=k].iter().enumerate() {
-            one_more[k - 1] += binomial * moment;
-            binomial *= (k - j) as f64 / (j + 1) as f64;
+        next[k - 1] = one_more_to(k, &raw);
+        if k < HIGHEST_MOMENT {
+            raw[k] = mean * next[k - 1];
         }
-        raw[k + 1] = mean * one_more[k - 1];
     }
-    (std::array::from_fn(|i| raw[i + 1]), one_more)
+    (raw, next)
+}
+
+/// E\[(1 + X)^k\], k = 1 … 8, from E\[X^k\].
+pub(crate) fn one_more(raw: &[f64; HIGHEST_MOMENT]) -> [f64; HIGHEST_MOMENT] {
+    std::array::from_fn(|i| one_more_to(i + 1, raw))
+}
+
+/// E\[(1 + X)^k\], by the binomial theorem.
+fn one_more_to(k: usize, raw: &[f64; HIGHEST_MOMENT]) -> f64 {
+    let (mut sum, mut binomial) = (1.0, 1.0);
+    for j in 1..=k {
+        binomial *= (k - j + 1) as f64 / j as f64;
+        sum += binomial * raw[j - 1];
+    }
+    sum
 }
 
 /// x, x², …, x⁸.

@@ -31,6 +31,16 @@ pub enum FieldError {
         /// Their number.
         found: usize,
     },
+    /// A list would have too many entries.
+    #[error("{what} may have {most} entries, asked for {found}")]
+    TooMany {
+        /// The parameter.
+        what: &'static str,
+        /// The greatest number of entries.
+        most: usize,
+        /// Their number, or the greatest that can be counted.
+        found: usize,
+    },
     /// Edges or positions do not increase.
     #[error("{what} must increase strictly, but {what}[{index}] = {found} follows {previous}")]
     NotIncreasing {

@@ -120,7 +120,7 @@ impl Strata {
     pub(crate) fn of(cell: &BoundCell, from: f64, epsilon: f64) -> Self {
         let width = cell.to - from;
         let thickness = cell.range() * width;
-        if !(thickness > 0.0) {
+        if thickness <= 0.0 {
             return Self { count: 0.0, width, thickness: 0.0 };
         }
         let count = (thickness / epsilon).ceil().max(1.0);
@@ -138,6 +138,8 @@ fn multiply_cell<F: Extinction, S: UniformSource + ?Sized>(
     source: &mut S,
 ) {
     let strata = Strata::of(cell, from, epsilon);
+    // Rounding may carry the last point of a cell to its end, where σ_t may jump to what the next cell bounds.
+    let last = cell.to.next_down();
     for i in 0..strata.count as u64 {
         // One variate for the order: the product runs down to 0, so that 0 is no endless series either.
         let u = source.next_uniform();
@@ -152,8 +154,7 @@ fn multiply_cell<F: Extinction, S: UniformSource + ?Sized>(
         while order > 0.0 {
             bracket = 1.0 - r * bracket;
             let s = from + (i as f64 + source.next_uniform()) * strata.width;
-            // Rounding may carry the last point of the cell over its end.
-            r = (field.sigma_t(s.min(cell.to)) - cell.minorant) / cell.range();
+            r = (field.sigma_t(s.min(last)) - cell.minorant) / cell.range();
             order -= 1.0;
         }
         product.multiply(1.0 - strata.thickness * (r * bracket));
