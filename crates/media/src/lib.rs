@@ -12,6 +12,7 @@
 //! | [`InvertOpticalThickness`] | the distance at which an optical thickness is reached, in closed form |
 //! | [`Cells`] | where one cubic ends and the next begins |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
+//! | [`SpectralExtinction`] | σ_t(s) of N wavelengths by one look-up; [`SpectralMajorant`] and others as above |
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
 //! Quadrature of a profile ([`RayQuadrature`]) is the reference that estimators are judged against; it is not an
@@ -38,6 +39,7 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod spectral;
 mod voxels;
 mod watched;
 
@@ -61,5 +63,9 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use spectral::{
+    Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
+    Wavelength,
+};
 pub use voxels::{Lattice, Voxels};
 pub use watched::{Counted, Domain, Violation, Watched};
