@@ -76,12 +76,31 @@ pub(crate) fn lookups_of_a_walk<F: Extinction>(
     tolerance: Tolerance,
     rates: &dyn Fn(f64, f64) -> [f64; 2],
 ) -> [f64; HIGHEST_MOMENT] {
-    let ended = quadrature.integrate_nested(tolerance, rates, |s, sigma_t, [ended, passed]| {
-        let [ending, _] = rates(s, sigma_t);
-        let (_, one_more) = poisson_moments(passed);
-        one_more.map(|moment| ending * (-ended).exp() * moment)
-    });
-    let [all_ended, all_passed] = quadrature.integrate(tolerance, rates).value;
+    lookups_of_a_race(quadrature, tolerance, &|s, sigma_t| {
+        let [ending, passing] = rates(s, sigma_t);
+        [0.0, ending, passing]
+    })
+}
+
+/// As [`lookups_of_a_walk`], with a further Poisson process whose first point ends the flight without a look-up; its rate is
+/// the first of the three.
+pub(crate) fn lookups_of_a_race<F: Extinction>(
+    quadrature: &mut RayQuadrature<F>,
+    tolerance: Tolerance,
+    rates: &dyn Fn(f64, f64) -> [f64; 3],
+) -> [f64; HIGHEST_MOMENT] {
+    let ending_and_passing = |s: f64, sigma_t: f64| {
+        let [unseen, ending, passing] = rates(s, sigma_t);
+        [unseen + ending, passing]
+    };
+    let ended: Integral<HIGHEST_MOMENT> =
+        quadrature.integrate_nested(tolerance, ending_and_passing, |s, sigma_t, [ended, passed]| {
+            let [unseen, ending, _] = rates(s, sigma_t);
+            let (as_passed, one_more) = poisson_moments(passed);
+            let under_way = (-ended).exp();
+            std::array::from_fn(|i| ending * under_way * one_more[i] + unseen * under_way * as_passed[i])
+        });
+    let [all_ended, all_passed] = quadrature.integrate(tolerance, ending_and_passing).value;
     let (escaped, _) = poisson_moments(all_passed);
     std::array::from_fn(|i| ended.value[i] + (-all_ended).exp() * escaped[i])
 }

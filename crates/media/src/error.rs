@@ -81,6 +81,16 @@ pub enum FieldError {
         /// Their number.
         found: usize,
     },
+    /// Profiles that belong together differ in their length.
+    #[error("{what} must have one length, found {first} and {found}")]
+    UnequalLengths {
+        /// The parameter.
+        what: &'static str,
+        /// The length of the first \[length\].
+        first: f64,
+        /// Another length \[length\].
+        found: f64,
+    },
     /// A direction of length zero, or a map that flattens space.
     #[error("{what} must not be degenerate")]
     Degenerate {

@@ -14,6 +14,7 @@
 //! | [`BoundedInCells`] | both bounds in each of many cells |
 //! | [`IntervalBounds`] | both bounds between any two distances, hence in cells |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
+//! | [`SpectralExtinction`] | σ_t(s) of N wavelengths by one look-up; [`SpectralMajorant`] and others as above |
 //!
 //! A medium with [`BoxBounds`] fills a [`BoundGrid`], which gives a ray its cells.
 //!
@@ -46,6 +47,7 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod spectral;
 mod voxels;
 mod watched;
 
@@ -73,5 +75,9 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use spectral::{
+    Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
+    Wavelength,
+};
 pub use voxels::{Lattice, Voxels};
 pub use watched::{Counted, Domain, Violation, Watched};
