@@ -198,7 +198,8 @@ mod tests {
         assert!(negative.contains("tightness"), "{negative}");
         assert!(refused_values(|_, isolines| isolines.push(0.0)).contains("line at 0"));
 
-        let refused_names = |spoil: fn(&mut Vec<Panel<Option<usize>>>, &mut Vec<Vec<Option<f64>>>)| {
+        type Names = Vec<Panel<Option<usize>>>;
+        let refused_names = |spoil: fn(&mut Names, &mut Vec<Vec<Option<f64>>>)| {
             refused(|document| {
                 let content = &mut document.sections[0].heat_maps[1].content;
                 let Content::Names { panels, numbers: Some(numbers), .. } = content else {

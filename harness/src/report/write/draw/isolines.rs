@@ -134,8 +134,10 @@ mod tests {
         [corner(0), corner(1), corner(3), corner(2)]
     }
 
+    type Piece = [(f64, f64); 2];
+
     /// Pairs of ends, each pair and all of them in a fixed order.
-    fn pieces(values: [f64; 4]) -> Vec<[(f64, f64); 2]> {
+    fn pieces(values: [f64; 4]) -> Vec<Piece> {
         let lines = isolines(2, &values, 0.0);
         let mut pieces: Vec<_> = lines.iter().map(|line| [line[0], line[1]]).collect();
         assert!(lines.iter().all(|line| line.len() == 2));
@@ -153,7 +155,7 @@ mod tests {
 
     #[test]
     fn all_cases_of_a_square() {
-        let expected: [(&[u8], &[[(f64, f64); 2]]); 7] = [
+        let expected: [(&[u8], &[Piece]); 7] = [
             (&[0, 15], &[]),
             (&[1, 14], &[[LEFT, LOW]]),
             (&[2, 13], &[[LOW, RIGHT]]),
