@@ -11,20 +11,23 @@ pub enum LookupLaw {
     Fixed,
     /// Only its mean.
     MeanOnly,
+    /// Nothing: not even its mean has a closed form. Look-ups are counted and watched, and not judged.
+    Unknown,
 }
 
 /// Relative error granted to an expected number of look-ups, which is an integral by quadrature.
 const QUADRATURE: f64 = 1e-8;
 
-/// What the look-ups of one estimate are judged against.
+/// What the look-ups of one estimate are judged against; `None` where nothing is known of them.
 #[must_use]
-pub fn reference(expected: f64, law: LookupLaw) -> Reference {
+pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
     let moments = match law {
         LookupLaw::Poisson => Some(poisson(expected)),
         LookupLaw::Fixed => Some(ClosedMoments::from_central(expected, &[Some(0.0); 7])),
         LookupLaw::MeanOnly => None,
+        LookupLaw::Unknown => return None,
     };
-    Reference { mean: expected, error: QUADRATURE * expected, moments, scores: Scores::Unbounded }
+    Some(Reference { mean: expected, error: QUADRATURE * expected, moments, scores: Scores::Unbounded })
 }
 
 /// As [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
@@ -51,6 +54,12 @@ fn poisson(mean: f64) -> ClosedMoments {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_unknown_number_is_judged_against_nothing() {
+        assert_eq!(reference(f64::NAN, LookupLaw::Unknown), None);
+        assert_eq!(reference(3.0, LookupLaw::MeanOnly).unwrap().mean, 3.0);
+    }
 
     #[test]
     fn the_moments_of_a_poisson_law() {

@@ -57,10 +57,13 @@ impl CheckResult {
             Err(refusal) => return Self::exact(false, format!("refused: {refusal}")),
         };
         let estimates = Self::of_verdict(&evidence.verdict, evidence.estimates.count());
+        let lookups = evidence.lookups_verdict.as_ref();
+        let reason =
+            lookups.map_or("not tested (their number has no closed form)", |verdict| &verdict.reason);
         Self {
             holds: evidence.holds(),
-            lookups_z: evidence.lookups_verdict.mean_z,
-            reason: format!("{}; look-ups {}", estimates.reason, evidence.lookups_verdict.reason),
+            lookups_z: lookups.and_then(|verdict| verdict.mean_z),
+            reason: format!("{}; look-ups {reason}", estimates.reason),
             ..estimates
         }
     }

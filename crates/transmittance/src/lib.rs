@@ -10,8 +10,17 @@
 //! | [`Tracking`] with the double particle model | szirmay-kalos-2017 4.2 | nothing (ratio and residual ratio tracking are special cases) |
 //! | [`Tracking`] with the single particle model | szirmay-kalos-2017 eq. 9 | the domain of its version |
 //! | [`LineIntegral`] | raab-2008 algorithm 2 | a majorant |
+//! | [`NextFlight`], after delta or ratio tracking | cramer-1978 | a majorant; with ratio tracking, any rate |
+//! | [`Unidirectional`], [`Bidirectional`]: ratio tracking and next flight by multiple importance sampling | georgiev-2019 | any rate |
+//! | [`PSeries`] in four versions | georgiev-2019 | nothing: any pivot |
+//! | [`GeneralisedPoisson`] | fearnhead-2008 | nothing: any pivot and rate |
+//! | [`AdaptiveRatio`] | misso-2023 | any rate; a majorant keeps it between 0 and 1 |
+//! | [`ProgressiveMajorant`] | misso-2023 | nothing; biased, consistent |
 //! | [`Regular`] | the integral itself | a closed-form optical thickness |
+//! | [`UnbiasedRayMarching`] | kettunen-2021 | nothing; any [`Comb`], any [`Roulette`], any number of segments |
+//! | [`Telescoping`] | misso-2022 | nothing |
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
+//! | [`Jackknife`] | peters-2025 | a biased baseline |
 //!
 //! ```
 //! use fairflight_collision::{Albedo, DoubleParticle};
@@ -29,18 +38,28 @@
 //! assert!((mean - (-3.0_f64).exp()).abs() < 0.004);
 //! ```
 
+mod adaptive_ratio;
+mod bidirectional;
 mod combs;
 mod estimator;
 mod explorers;
+mod generalised_poisson;
 mod line_integral;
+mod next_flight;
+mod p_series;
 mod product_law;
+mod progressive_majorant;
 mod ray_marching;
 mod regular;
 mod signed_product;
+#[cfg(test)]
+mod test_support;
 mod theory;
 mod tracking;
 mod woodcock;
 
+pub use adaptive_ratio::{AdaptiveRatio, FloorError};
+pub use bidirectional::{Bidirectional, Unidirectional};
 pub use combs::{
     Comb, CombCumulants, CombLookups, CombShape, Jackknife, NoSegments, NoTeeth, Prepared, Roulette,
     RouletteError, RunningCumulant, SymmetricMeans, Telescoping, TelescopingError, UnbiasedRayMarching,
@@ -48,8 +67,12 @@ pub use combs::{
 };
 pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
+pub use generalised_poisson::{GeneralisedPoisson, GeneralisedPoissonError};
 pub use line_integral::{LineIntegral, NoSplits, Starts};
+pub use next_flight::{NextFlight, NextFlightVersion};
+pub use p_series::{PSeries, PSeriesVersion, PivotError};
 pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
+pub use progressive_majorant::{ProgressiveMajorant, StartError};
 pub use ray_marching::{NoSteps, Offset, RayMarching};
 pub use regular::Regular;
 pub use signed_product::SignedProduct;

@@ -13,6 +13,8 @@
 //!
 //! since J_1 = −∫ σ_diff cancels. The J_j are what quadrature delivers; nothing here cancels for a small variance.
 
+use crate::Theory;
+
 /// The highest power whose moment is computed: the standard error of a measured variance needs the 4th, the test whether
 /// that error may be used with a normal law the 6th and 8th.
 pub const HIGHEST_MOMENT: usize = 8;
@@ -44,6 +46,19 @@ impl ProductLaw {
     pub fn log_relative_variance(&self) -> f64 {
         let j2 = self.integrals[0];
         if j2 > 1.0 { j2 + (-(-j2).exp()).ln_1p() } else { j2.exp_m1().ln() }
+    }
+
+    /// What is known of an unbiased estimate with this law, where J_2 has an absolute `error` and as many `lookups` are
+    /// expected: d Var/Var = dJ_2 exp(J_2)/(exp(J_2) − 1).
+    #[must_use]
+    pub fn theory(&self, error: f64, lookups: f64) -> Theory {
+        Theory {
+            relative_mean: 1.0,
+            relative_central: self.relative_central(),
+            log_relative_variance: self.log_relative_variance(),
+            relative_variance_error: error / -(-self.integrals[0]).exp_m1(),
+            lookups,
+        }
     }
 
     /// E\[(T̂ − T)^n\] / T^n for n = 2 … 8.

@@ -19,6 +19,29 @@ impl SignedProduct {
     /// The empty product.
     pub const ONE: Self = Self { mantissa: 1.0, scale: 0 };
 
+    /// exp(`exponent`), also where that is no number of double precision.
+    #[must_use]
+    pub fn exp(exponent: f64) -> Self {
+        let scale = (exponent / (f64::from(STEP) * std::f64::consts::LN_2)).round();
+        let rest = exponent - scale * f64::from(STEP) * std::f64::consts::LN_2;
+        Self { mantissa: rest.exp(), scale: scale as i64 }
+    }
+
+    /// This product over another, rounded once: 0 or infinite only where the quotient is. The other must not be 0.
+    #[inline]
+    #[must_use]
+    pub fn over(&self, other: &Self) -> f64 {
+        let quotient = self.mantissa / other.mantissa;
+        match self.scale - other.scale {
+            0 => quotient,
+            // 2^±1152 is out of range, but not before it has met a quotient within 2^±257.
+            scale => {
+                let half = 2.0_f64.powi(STEP / 2 * scale.clamp(-12, 12) as i32);
+                quotient * half * half
+            }
+        }
+    }
+
     /// Multiplies by a factor of magnitude below 2^895.
     #[inline]
     pub fn multiply(&mut self, factor: f64) {
@@ -91,6 +114,22 @@ mod tests {
         }
         let back = product.times_exp(-5000.0 * 3.0_f64.ln());
         assert!((back - 1.0).abs() < 1e-11);
+    }
+
+    #[test]
+    fn exponentials_and_quotients_beyond_the_range_of_numbers() {
+        for exponent in [-5000.0, -700.0, -44.4, 0.0, 1e-3, 300.0, 9000.0] {
+            let product = SignedProduct::exp(exponent);
+            assert!(
+                (product.ln_abs() - exponent).abs() <= 4.0 * f64::EPSILON * (1.0 + exponent.abs()),
+                "{exponent}"
+            );
+            assert_eq!(product.over(&product), 1.0);
+            let more = SignedProduct::exp(exponent + 100.0).over(&product);
+            assert!((more / 100.0_f64.exp() - 1.0).abs() < 1e-11, "{exponent}: {more}");
+        }
+        let large = SignedProduct::exp(5000.0);
+        assert_eq!((large.over(&SignedProduct::ONE), SignedProduct::ONE.over(&large)), (f64::INFINITY, 0.0));
     }
 
     #[test]

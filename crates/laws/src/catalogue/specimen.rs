@@ -59,7 +59,7 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// The law of `estimator`, whose own breakpoints are `also`.
-    fn examine<'f, E>(
+    pub(super) fn examine<'f, E>(
         &'f self,
         estimator: &E,
         also: &[f64],

@@ -148,7 +148,7 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
 mod tests {
     use super::super::CombShape;
     use super::*;
-    use crate::combs::test_support::{seed_ray, tent};
+    use crate::test_support::{seed_ray, tent};
     use approx::assert_relative_eq;
     use fairflight_media::Constant;
 
@@ -184,6 +184,6 @@ mod tests {
         assert_relative_eq!(k2(8, CombShape::EndpointMatched), 1.36, max_relative = 0.01);
         let tent = tent();
         let law = Comb::new(4, CombShape::Periodised).unwrap();
-        assert!(law.cumulants(&tent.field, 0.0, 3.0, Tolerance::TIGHT).k2 < 0.05);
+        assert!(law.cumulants(&tent, 0.0, 3.0, Tolerance::TIGHT).k2 < 0.05);
     }
 }

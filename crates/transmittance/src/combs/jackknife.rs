@@ -110,28 +110,23 @@ fn exp_m1_of_diagonal(x: f64) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::combs::CombShape;
-    use crate::combs::test_support::{seed_ray, tent};
+    use crate::test_support::{seed_ray, tent, theory_of};
     use approx::assert_relative_eq;
     use fairflight_media::OpticalThickness;
     use fairflight_sources::{Scripted, Seeded};
-
-    fn theory<F: Breakpoints + OpticalThickness>(comb: Comb, field: &F) -> Theory {
-        let tau = field.optical_thickness(0.0, field.length());
-        Jackknife::new(comb).theory(&mut RayQuadrature::new(field, &[]), tau, Tolerance::TIGHT)
-    }
 
     #[test]
     fn bias_and_variance_on_the_seed_ray() {
         let ray = seed_ray();
         for (teeth, bias, tolerance) in [(8, 0.029, 0.001), (12, 0.0012, 0.0001)] {
             let comb = Comb::new(teeth, CombShape::Uniform).unwrap();
-            let found = theory(comb, &ray).relative_mean - 1.0;
+            let found = theory_of(&ray, &Jackknife::new(comb)).relative_mean - 1.0;
             assert_relative_eq!(found, bias, epsilon = tolerance);
             let predicted = Jackknife::predicted_bias(&comb.cumulants(&ray, 0.0, 20.0, Tolerance::TIGHT));
             assert_relative_eq!(predicted, found, max_relative = 0.1);
         }
         for (teeth, variance) in [(8, 0.74), (25, 0.0136)] {
-            let found = theory(Comb::new(teeth, CombShape::Uniform).unwrap(), &ray);
+            let found = theory_of(&ray, &Jackknife::new(Comb::new(teeth, CombShape::Uniform).unwrap()));
             assert_relative_eq!(found.relative_central[0], variance, max_relative = 0.01);
             assert_eq!(found.lookups, f64::from(2 * teeth));
         }
@@ -139,9 +134,10 @@ mod tests {
 
     #[test]
     fn moments_are_those_of_samples() {
-        let (field, mut source) = (tent().field, Seeded::new(12));
+        let (field, mut source) = (tent(), Seeded::new(12));
         let comb = Comb::new(2, CombShape::Uniform).unwrap();
-        let (estimator, theory) = (Jackknife::new(comb), theory(comb, &field));
+        let estimator = Jackknife::new(comb);
+        let theory = theory_of(&field, &estimator);
         let (tau, n) = (field.optical_thickness(0.0, 3.0), 200_000);
         let values: Vec<f64> = (0..n)
             .map(|_| tau.exp() * estimator.estimate(&field, &mut source) - theory.relative_mean)

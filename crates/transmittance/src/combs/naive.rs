@@ -13,7 +13,7 @@ pub fn predicted_naive_bias(cumulants: &CombCumulants) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::combs::test_support::seed_ray;
+    use crate::test_support::seed_ray;
     use crate::{ClosedForm, Comb, CombShape, Offset, RayMarching};
     use approx::assert_relative_eq;
     use fairflight_media::{RayQuadrature, Tolerance};
