@@ -14,6 +14,7 @@ mod list;
 mod render;
 mod verify;
 
+pub mod comparison;
 pub mod experiment;
 pub mod image;
 pub mod interrupt;

@@ -94,6 +94,12 @@ impl<F: Extinction, C: AsRef<[BoundCell]>> InCells<F, C> {
     pub fn field(&self) -> &F {
         &self.field
     }
+
+    /// Another field with the same claim, which is not checked again: one of the same length.
+    pub fn with_field<G: Extinction>(&self, field: G) -> InCells<G, &[BoundCell]> {
+        debug_assert_eq!(field.length(), self.field.length(), "cells of another profile");
+        InCells { field, cells: self.cells.as_ref(), minorant: self.minorant, majorant: self.majorant }
+    }
 }
 
 impl<F: Extinction, C> Extinction for InCells<F, C> {

@@ -1,6 +1,6 @@
 //! Bounds of a profile between two distances, and with them bounds in equal cells.
 
-use crate::{BoundCell, Constant, Extinction, PiecewiseConstant, PiecewiseLinear, Vacuum};
+use crate::{BoundCell, BoxBounds, Constant, Extinction, PiecewiseConstant, PiecewiseLinear, Ray, Vacuum};
 
 /// A profile that knows its range on every stretch.
 ///
@@ -57,6 +57,18 @@ impl IntervalBounds for PiecewiseLinear {
     }
 }
 
+/// In the box around the stretch: not tight for a ray across the axes, and never wrong.
+impl<M: BoxBounds> IntervalBounds for Ray<M> {
+    fn bounds_between(&self, from: f64, to: f64) -> (f64, f64) {
+        /// A point on the line is off by a few roundings of its coordinates, and of the way to it.
+        const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+        let line = self.local_line();
+        let (start, end) = (line.at(from), line.at(to));
+        let slack = ROUNDINGS * (start.abs().max(end.abs()) + line.origin.abs());
+        self.medium().bounds_in(start.min(end) - slack, start.max(end) + slack)
+    }
+}
+
 impl<F: IntervalBounds + ?Sized> IntervalBounds for &F {
     fn bounds_between(&self, from: f64, to: f64) -> (f64, f64) {
         (**self).bounds_between(from, to)
@@ -84,7 +96,8 @@ pub(crate) fn widened(low: f64, high: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::InCells;
+    use crate::{AnalyticCosine, InCells};
+    use glam::DVec3;
     use proptest::prelude::*;
 
     #[test]
@@ -115,6 +128,22 @@ mod tests {
         assert_eq!(Constant::new(1.0, 0.0).unwrap().equal_cells(3), []);
         assert_eq!(Constant::new(1.0, 2.0).unwrap().equal_cells(0).len(), 1);
         assert_eq!(Vacuum::new(2.0).equal_cells(2).len(), 2);
+    }
+
+    #[test]
+    fn a_ray_is_within_the_bounds_of_its_cells() {
+        let medium = AnalyticCosine::new(1.0).unwrap();
+        for direction in [DVec3::Z, DVec3::new(0.3, -0.2, 1.0), DVec3::new(-1.0, 0.4, 0.1)] {
+            let clip = AnalyticCosine::default_bounds().clip(DVec3::new(0.5, 0.0, 9.0), direction, None);
+            let ray = Ray::new(&medium, &clip.unwrap().unwrap());
+            let mut from = 0.0;
+            for cell in ray.equal_cells(30) {
+                for i in 0..=50 {
+                    assert!(cell.admits(ray.sigma_t(from + f64::from(i) / 50.0 * (cell.to - from))));
+                }
+                from = cell.to;
+            }
+        }
     }
 
     proptest! {

@@ -20,7 +20,10 @@
 //! | [`AdaptiveRatio`] | misso-2023 | any rate; a majorant keeps it between 0 and 1 |
 //! | [`ProgressiveMajorant`] | misso-2023 | nothing; biased, consistent |
 //! | [`Regular`] | the integral itself | a closed-form optical thickness |
+//! | [`UnbiasedRayMarching`] | kettunen-2021 | nothing; any [`Comb`], any [`Roulette`], any number of segments |
+//! | [`Telescoping`] | misso-2022 | nothing |
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
+//! | [`Jackknife`] | peters-2025 | a biased baseline |
 //!
 //! ```
 //! use fairflight_collision::{Albedo, DoubleParticle};
@@ -63,8 +66,11 @@ mod theory;
 mod tracking;
 mod woodcock;
 
+<<<<<<< HEAD
 #[cfg(test)]
 mod seed_ray_tests;
+=======
+>>>>>>> combs
 pub use adaptive_ratio::{AdaptiveRatio, FloorError};
 pub use bidirectional::{Bidirectional, Unidirectional};
 pub use combs::{

@@ -3,7 +3,6 @@
 use super::TestRay;
 use crate::Failure;
 use crate::experiment::draw;
-use crate::measure::Draws;
 use crate::plan::AnyEstimator;
 use crate::reference::predict;
 use fairflight_media::Tolerance;
@@ -53,7 +52,7 @@ pub struct Effort {
 /// # Errors
 /// If the estimator is not defined on the ray.
 pub fn fight(ray: &TestRay, estimator: &AnyEstimator, effort: Effort, seed: u64) -> Result<Bout, Failure> {
-    let draws = Draws { samples: effort.samples, seed, counted: effort.counted };
+    let draws = (effort.samples, seed, effort.counted);
     let measurement = draw(&ray.profile, estimator, &ray.truth, draws, &|_| ())?;
     let moments = measurement.moments.scaled((ray.truth.optical_thickness).exp());
     let samples = moments.count();

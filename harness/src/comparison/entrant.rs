@@ -7,7 +7,7 @@ use crate::spec::{
     BeyondSpec, BoundsSpec, CellsSpec, CombKind, ControlSpec, EstimatorSpec, NextFlightKind, PSeriesKind,
     RouletteSpec, SamplingSpec, TeethSpec,
 };
-use fairflight_transmittance::{Experience, Roulette};
+use fairflight_transmittance::{Experience, Hybrid, Roulette};
 
 /// What an entrant may know beside the ray: nothing of it comes from the variates that will estimate.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +34,7 @@ pub struct Entrant {
 #[derive(Clone, Debug)]
 enum Parameters {
     Spec(EstimatorSpec),
-    Hybrid,
+    Hybrid { budget: f64 },
 }
 
 impl Entrant {
@@ -45,10 +45,11 @@ impl Entrant {
     pub fn on(&self, ray: &TestRay, facts: &Facts) -> Result<AnyEstimator, Failure> {
         match (self.parameters)(ray, facts) {
             Parameters::Spec(spec) => AnyEstimator::build(&spec, &ray.profile),
-            Parameters::Hybrid => Ok(AnyEstimator::Beyond(Beyond::hybrid(
+            Parameters::Hybrid { budget } => Ok(AnyEstimator::Beyond(Beyond::hybrid(
                 &facts.experience,
                 ray.profile.length(),
                 ray.majorant,
+                budget,
             ))),
         }
     }
@@ -58,7 +59,7 @@ impl Entrant {
     pub fn spec(&self, ray: &TestRay, facts: &Facts) -> Option<EstimatorSpec> {
         match (self.parameters)(ray, facts) {
             Parameters::Spec(spec) => Some(spec),
-            Parameters::Hybrid => None,
+            Parameters::Hybrid { .. } => None,
         }
     }
 }
@@ -100,8 +101,8 @@ fn by_the_rule(ray: &TestRay, comb: CombKind, roulette: RouletteSpec, segments: 
 const USUAL: RouletteSpec = RouletteSpec::Stop(0.9);
 
 /// The roulette that fits the variance of earlier combs; the usual one before there are any.
-fn tuned(facts: &Facts) -> RouletteSpec {
-    match facts.experience.comb_variance() {
+fn tuned(ray: &TestRay, facts: &Facts) -> RouletteSpec {
+    match facts.experience.matched_variance(ray.profile.length()) {
         Some(k2) => RouletteSpec::Stop(Roulette::tuned(k2).stop_probability()),
         None => USUAL,
     }
@@ -164,7 +165,7 @@ pub fn entrants() -> Vec<Entrant> {
         })),
         ours("telescoping, matched", |ray, _| telescoping(ray, 0.82, true)),
         ours("matched, self-tuned", |ray, facts| {
-            by_the_rule(ray, CombKind::EndpointMatched, tuned(facts), 1)
+            by_the_rule(ray, CombKind::EndpointMatched, tuned(ray, facts), 1)
         }),
         ours("periodised comb", |ray, _| by_the_rule(ray, CombKind::Periodised, USUAL, 1)),
         ours("Bernoulli comb 2", |ray, _| by_the_rule(ray, CombKind::Bernoulli2, USUAL, 1)),
@@ -172,8 +173,8 @@ pub fn entrants() -> Vec<Entrant> {
         ours("factorised, one tooth", |ray, facts| {
             // As many segments as the rule has teeth; each has its share of the variance.
             let segments = fairflight_transmittance::teeth_for(depth(ray));
-            let roulette = match facts.experience.independent_variance(ray.profile.length(), segments) {
-                Some(k2) => RouletteSpec::Stop(Roulette::tuned(k2).stop_probability()),
+            let roulette = match facts.experience.apart_variance(ray.profile.length()) {
+                Some(k2) => RouletteSpec::Stop(Roulette::tuned(k2 / f64::from(segments)).stop_probability()),
                 None => USUAL,
             };
             beyond(BeyondSpec::UnbiasedRayMarching {
@@ -188,6 +189,7 @@ pub fn entrants() -> Vec<Entrant> {
         in_cells(ours("jittered ratio in cells, 0.25", |ray, _| {
             beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Cells(cells(ray)), epsilon: 0.25 })
         })),
-        ours("hybrid", |_, _| Parameters::Hybrid),
+        ours("hybrid, frugal", |_, _| Parameters::Hybrid { budget: 2.0 }),
+        ours("hybrid", |_, _| Parameters::Hybrid { budget: Hybrid::USUAL_BUDGET }),
     ]
 }

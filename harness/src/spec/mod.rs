@@ -4,6 +4,7 @@
 //! A spec is what was asked for, checked in itself (types, signs, lengths of lists). Whether it fits together (a
 //! majorant that is one, edges that cover the ray) is for the plan to find.
 
+mod beyond;
 mod estimator;
 mod experiment;
 mod medium;
@@ -11,6 +12,9 @@ mod node;
 mod profile;
 mod scene;
 
+pub use beyond::{
+    BeyondSpec, BoundsSpec, CellsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec,
+};
 pub use estimator::{ControlSpec, EstimatorSpec, SamplingSpec};
 pub use experiment::{Experiment, Overrides, Request, Sweep};
 pub use medium::{MediumKind, MediumSpec};

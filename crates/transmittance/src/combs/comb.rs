@@ -1,13 +1,13 @@
-//! The comb: a quadrature of the optical thickness with one random shift (kettunen-2021 section 4).
+//! The comb: a quadrature of the optical thickness with one random shift (kettunen-2021).
 
 use fairflight_media::{Breakpoints, Extinction};
 
 /// How the teeth of a [`Comb`] are placed and corrected. Every shape is unbiased on every profile; they differ in variance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CombShape {
-    /// Equidistant teeth of equal weight (kettunen-2021 eq. 13).
+    /// Equidistant teeth of equal weight, the comb of kettunen-2021.
     Uniform,
-    /// The uniform comb less h B_1(u) \[σ_t\], the first term of its error (kettunen-2021 section 4.2): it integrates a linear
+    /// The uniform comb less h B_1(u) \[σ_t\], the first term of its error (the endpoint matching of kettunen-2021): it integrates a linear
     /// profile exactly. Two shared look-ups, at the ends.
     EndpointMatched,
     /// Two terms, with slopes at the ends by one-sided differences over half a tooth. Four shared look-ups.
@@ -221,9 +221,11 @@ impl Comb {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::combs::test_support::{seed_ray, tent};
+    use crate::test_support::{seed_ray, tent};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, Counted, PiecewiseLinear, Tolerance, adaptive_integral};
+    use fairflight_media::{
+        Constant, Counted, OpticalThickness, PiecewiseLinear, Tolerance, adaptive_integral,
+    };
 
     #[test]
     fn every_shape_has_the_integral_as_its_mean() {
@@ -231,13 +233,14 @@ mod tests {
         for shape in CombShape::ALL {
             for teeth in [1, 3, 8] {
                 let comb = Comb::new(teeth, shape).unwrap();
-                for (from, to, exact) in
-                    [(0.0, 3.0, tent.thickness(0.0, 3.0)), (0.4, 1.7, tent.thickness(0.4, 1.7))]
-                {
-                    let prepared = comb.prepare(&tent.field, from, to);
-                    let breaks = comb.folded_breakpoints(&tent.field, &prepared);
+                for (from, to, exact) in [
+                    (0.0, 3.0, tent.optical_thickness(0.0, 3.0)),
+                    (0.4, 1.7, tent.optical_thickness(0.4, 1.7)),
+                ] {
+                    let prepared = comb.prepare(&tent, from, to);
+                    let breaks = comb.folded_breakpoints(&tent, &prepared);
                     let mean = adaptive_integral(1.0, &breaks, Tolerance::TIGHT, |u| {
-                        [comb.thickness(&tent.field, &prepared, u)]
+                        [comb.thickness(&tent, &prepared, u)]
                     });
                     assert_relative_eq!(mean.value[0], exact, max_relative = 1e-12);
                 }

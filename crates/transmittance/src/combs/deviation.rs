@@ -53,12 +53,14 @@ impl<F: Breakpoints> Breakpoints for Deviation<'_, F> {
     }
 }
 
-/// Expectations of functions of D, in units of its standard deviation where powers are concerned.
+/// Expectations of functions of D. Powers are those of x = D/max |D|, which are at most 1: their integrals are as exact as they
+/// need to be at any order.
 pub(super) struct DeviationLaw<'a, F> {
     quadrature: RayQuadrature<Deviation<'a, F>>,
     mean: f64,
-    /// sqrt(k2); 0 where that is nothing but rounding.
-    deviation: f64,
+    /// max |D| over the nodes of the quadrature; 0 where D is nothing but rounding.
+    unit: f64,
+    k2: f64,
     relative_error: f64,
     tolerance: Tolerance,
 }
@@ -66,8 +68,13 @@ pub(super) struct DeviationLaw<'a, F> {
 /// What rounding leaves of a comb's sum, per unit of 1 + its thickness.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Look-ups that one quadrature may spend.
+const MOST_LOOKUPS: f64 = 3e7;
+
 impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
     pub(super) fn new(comb: &'a Comb, field: &'a F, prepared: &'a Prepared, tolerance: Tolerance) -> Self {
+        let affordable = (MOST_LOOKUPS / 21.0 / f64::from(comb.teeth())) as usize;
+        let tolerance = Tolerance { most_panels: tolerance.most_panels.min(affordable), ..tolerance };
         let breaks = comb.folded_breakpoints(field, prepared);
         let mean = adaptive_integral(1.0, &breaks, tolerance, |u| [comb.thickness(field, prepared, u)]);
         let mean = mean.value[0];
@@ -77,19 +84,25 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
         let coarse = Tolerance { absolute: noise * noise, relative: 1e-3, ..tolerance };
         let rough = quadrature.integrate(coarse, |_, d| [d * d]).value[0];
         if rough <= noise * noise {
-            return Self { quadrature, mean, deviation: 0.0, relative_error: 0.0, tolerance };
+            return Self { quadrature, mean, unit: 0.0, k2: 0.0, relative_error: 0.0, tolerance };
         }
         let exactness = tolerance.relative.max(8.0 * noise / rough.sqrt());
         let fine = Tolerance { absolute: 0.0, relative: exactness, ..tolerance };
         let k2 = quadrature.integrate(fine, |_, d| [d * d]);
+        let unit = quadrature.nodes().fold(0.0_f64, |greatest, (_, d)| greatest.max(d.abs()));
         let tolerance = Tolerance { absolute: exactness, relative: exactness, ..tolerance };
-        let (deviation, relative_error) = (k2.value[0].sqrt(), k2.error[0] / k2.value[0]);
-        Self { quadrature, mean, deviation, relative_error, tolerance }
+        let (k2, relative_error) = (k2.value[0], k2.error[0] / k2.value[0]);
+        Self { quadrature, mean, unit, k2, relative_error, tolerance }
     }
 
-    /// sqrt(k2).
-    pub(super) fn deviation(&self) -> f64 {
-        self.deviation
+    /// max |D|; 0 for a comb without variance.
+    pub(super) fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// Var D.
+    pub(super) fn k2(&self) -> f64 {
+        self.k2
     }
 
     /// The error of k2, relative to it.
@@ -98,32 +111,31 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
     }
 
     pub(super) fn cumulants(&mut self) -> CombCumulants {
-        let Self { mean, deviation, .. } = *self;
-        if deviation == 0.0 {
+        let Self { mean, unit, k2, .. } = *self;
+        if unit == 0.0 {
             return CombCumulants { mean, k2: 0.0, k3: 0.0, k4: 0.0 };
         }
-        let k2 = deviation * deviation;
-        let [third, fourth] = self.expect(|_, z| [z * z * z, z * z * z * z]);
+        let [third, fourth] = self.expect(|_, x| [x * x * x, x * x * x * x]);
         // D = E[X] − X: odd moments change their sign.
-        CombCumulants { mean, k2, k3: -third * k2 * deviation, k4: (fourth - 3.0) * k2 * k2 }
+        CombCumulants { mean, k2, k3: -third * unit.powi(3), k4: fourth * unit.powi(4) - 3.0 * k2 * k2 }
     }
 
-    /// E\[g(D, z)\], z = D/sqrt(k2); for a k2 above 0.
+    /// E\[g(D, x)\], x = D/max |D|; for a comb with a variance.
     pub(super) fn expect<const K: usize>(&mut self, g: impl Fn(f64, f64) -> [f64; K]) -> [f64; K] {
-        let scale = 1.0 / self.deviation;
+        let scale = 1.0 / self.unit;
         self.quadrature.integrate(self.tolerance, |_, d| g(d, d * scale)).value
     }
 
-    /// E\[z^p g(D)\] for p = 0 … `highest`.
+    /// E\[x^p g(D)\] for p = 0 … `highest`.
     pub(super) fn moments(&mut self, highest: usize, g: impl Fn(f64) -> f64) -> Vec<f64> {
         const BATCH: usize = 8;
         let mut moments = Vec::with_capacity(highest + BATCH);
         while moments.len() <= highest {
             let first = moments.len() as i32;
-            moments.extend(self.expect::<BATCH>(|d, z| {
-                let mut power = z.powi(first) * g(d);
+            moments.extend(self.expect::<BATCH>(|d, x| {
+                let mut power = x.powi(first) * g(d);
                 std::array::from_fn(|_| {
-                    let next = power * z;
+                    let next = power * x;
                     std::mem::replace(&mut power, next)
                 })
             }));
@@ -136,7 +148,7 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
 mod tests {
     use super::super::CombShape;
     use super::*;
-    use crate::combs::test_support::{seed_ray, tent};
+    use crate::test_support::{seed_ray, tent};
     use approx::assert_relative_eq;
     use fairflight_media::Constant;
 
@@ -172,6 +184,6 @@ mod tests {
         assert_relative_eq!(k2(8, CombShape::EndpointMatched), 1.36, max_relative = 0.01);
         let tent = tent();
         let law = Comb::new(4, CombShape::Periodised).unwrap();
-        assert!(law.cumulants(&tent.field, 0.0, 3.0, Tolerance::TIGHT).k2 < 0.05);
+        assert!(law.cumulants(&tent, 0.0, 3.0, Tolerance::TIGHT).k2 < 0.05);
     }
 }

@@ -66,7 +66,7 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
         let mut law = DeviationLaw::new(&self.comb, field, &prepared, tolerance);
         let lookups = self.comb.lookups();
         let lookups = f64::from(lookups.shared) + 2.0 * f64::from(lookups.per_draw);
-        if law.deviation() == 0.0 {
+        if law.unit() == 0.0 {
             return Theory {
                 relative_mean: 1.0,
                 relative_central: [0.0; HIGHEST_MOMENT - 1],
@@ -104,4 +104,55 @@ fn exp_m1_of_diagonal(x: f64) -> [f64; 2] {
     let half = (0.5 * x).sin();
     // e^x cos x − 1 = (e^x − 1) cos x − (1 − cos x)
     [x.exp_m1() * x.cos() - 2.0 * half * half, x.exp() * x.sin()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::combs::CombShape;
+    use crate::test_support::{seed_ray, tent, theory_of};
+    use approx::assert_relative_eq;
+    use fairflight_media::OpticalThickness;
+    use fairflight_sources::{Scripted, Seeded};
+
+    #[test]
+    fn bias_and_variance_on_the_seed_ray() {
+        let ray = seed_ray();
+        for (teeth, bias, tolerance) in [(8, 0.029, 0.001), (12, 0.0012, 0.0001)] {
+            let comb = Comb::new(teeth, CombShape::Uniform).unwrap();
+            let found = theory_of(&ray, &Jackknife::new(comb)).relative_mean - 1.0;
+            assert_relative_eq!(found, bias, epsilon = tolerance);
+            let predicted = Jackknife::predicted_bias(&comb.cumulants(&ray, 0.0, 20.0, Tolerance::TIGHT));
+            assert_relative_eq!(predicted, found, max_relative = 0.1);
+        }
+        for (teeth, variance) in [(8, 0.74), (25, 0.0136)] {
+            let found = theory_of(&ray, &Jackknife::new(Comb::new(teeth, CombShape::Uniform).unwrap()));
+            assert_relative_eq!(found.relative_central[0], variance, max_relative = 0.01);
+            assert_eq!(found.lookups, f64::from(2 * teeth));
+        }
+    }
+
+    #[test]
+    fn moments_are_those_of_samples() {
+        let (field, mut source) = (tent(), Seeded::new(12));
+        let comb = Comb::new(2, CombShape::Uniform).unwrap();
+        let estimator = Jackknife::new(comb);
+        let theory = theory_of(&field, &estimator);
+        let (tau, n) = (field.optical_thickness(0.0, 3.0), 200_000);
+        let values: Vec<f64> = (0..n)
+            .map(|_| tau.exp() * estimator.estimate(&field, &mut source) - theory.relative_mean)
+            .collect();
+        let mean = |k: i32| values.iter().map(|x| x.powi(k)).sum::<f64>() / f64::from(n);
+        let variance = theory.relative_central[0];
+        assert!(mean(1).abs() < 5.0 * (variance / f64::from(n)).sqrt());
+        assert!((mean(2) - variance).abs() < 5.0 * (mean(4) / f64::from(n)).sqrt());
+    }
+
+    #[test]
+    fn two_draws_and_nothing_else() {
+        let field = fairflight_media::PiecewiseLinear::new(vec![0.0, 1.0], vec![0.0, 2.0]).unwrap();
+        let estimator = Jackknife::new(Comb::new(1, CombShape::Uniform).unwrap());
+        let found = estimator.estimate(&field, &mut Scripted::new([0.25, 0.5]));
+        assert_relative_eq!(found, (0.25_f64).cos() * (-0.75_f64).exp(), max_relative = 1e-15);
+    }
 }

@@ -12,10 +12,9 @@ mod roulette;
 mod running_cumulant;
 mod sample_count;
 mod second_moment;
+mod second_order;
 mod symmetric_means;
 mod telescoping;
-#[cfg(test)]
-mod test_support;
 mod unbiased_ray_marching;
 
 pub use comb::{Comb, CombLookups, CombShape, NoTeeth, Prepared};
@@ -25,6 +24,7 @@ pub use naive::predicted_naive_bias;
 pub use roulette::{Roulette, RouletteError};
 pub use running_cumulant::RunningCumulant;
 pub use sample_count::{expected_order, teeth_for};
+pub use second_order::predicted_relative_variance;
 pub use symmetric_means::SymmetricMeans;
 pub use telescoping::{Telescoping, TelescopingError};
-pub use unbiased_ray_marching::{NoSegments, UnbiasedRayMarching, predicted_relative_variance};
+pub use unbiased_ray_marching::{NoSegments, UnbiasedRayMarching};

@@ -1,10 +1,10 @@
-//! At which order of the power series to stop: the roulette of Bhanot & Kennedy, as kettunen-2021 uses it.
+//! At which order of the power series to stop: the roulette of bhanot-1985 as kettunen-2021 uses it.
 
 use super::expected_order;
 use fairflight_sources::UniformSource;
 
 /// The orders that are taken for sure once the roulette goes on at all: K, and the c of the probability c/k of going on to
-/// order k (bhanot-kennedy-1985, kettunen-2021 section 5.2: K = c = 2).
+/// order k (bhanot-1985; K = c = 2 in kettunen-2021).
 const SURE: u32 = 2;
 const C: f64 = 2.0;
 
@@ -32,7 +32,7 @@ pub enum RouletteError {
 }
 
 impl Roulette {
-    /// p_Z = 0.9 (kettunen-2021 section 5.2).
+    /// p_Z = 0.9, that of kettunen-2021.
     pub const KETTUNEN: Self = Self { going_on: 0.1 };
 
     /// The P that [`Self::tuned`] does not leave.

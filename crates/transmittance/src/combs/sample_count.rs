@@ -1,8 +1,8 @@
-//! How many teeth a comb should have (kettunen-2021 section 5.1).
+//! How many teeth a comb should have (kettunen-2021).
 
 use super::Roulette;
 
-/// The expected order of a Bhanot–Kennedy roulette (bhanot-kennedy-1985): stopped at once with probability
+/// The expected order of a Bhanot–Kennedy roulette (bhanot-1985): stopped at once with probability
 /// `stop_probability`, else `sure` orders, then on to order k with probability c/k:
 ///
 /// > (1 − p_Z) (K + Σ_{i>K} c^{i−K} K!/i!) = (1 − p_Z) (K + (e^c − Σ_{i≤K} c^i/i!) K!/c^K).

@@ -33,7 +33,7 @@ pub(super) fn relative_variance<F: Breakpoints>(
     law: &mut DeviationLaw<'_, F>,
     roulette: Roulette,
 ) -> (f64, f64) {
-    if law.deviation() == 0.0 {
+    if law.unit() == 0.0 {
         return (0.0, 0.0);
     }
     for highest in ORDERS {
@@ -54,29 +54,31 @@ pub(super) fn relative_variance<F: Breakpoints>(
     (f64::NAN, f64::NAN)
 }
 
-/// Moments of z = D/sqrt(v), from which those of D are read by weights w_k v^{k/2}.
+/// Moments of x = D/max |D|, from which those of D are read by weights w_k (max |D|)^k; v is the variance of x.
 struct Tables {
-    deviation: f64,
-    /// E\[(e^D − 1)²\], E\[e^D − 1\], E\[z (e^D − 1)\].
+    unit: f64,
+    /// E\[(e^D − 1)²\], E\[e^D − 1\], E\[x (e^D − 1)\].
     square: f64,
     first: f64,
     slope: f64,
-    /// E\[z^p e^D\].
+    /// E\[x^p e^D\].
     single: Vec<f64>,
-    /// E\[z^p e^D (e^D − 1)\].
+    /// E\[x^p e^D (e^D − 1)\].
     mixed: Vec<f64>,
-    /// `double[m][p]` = E\[(1 + z²)^m z^p e^{2D}\].
+    /// `double[m][p]` = E\[(v + x²)^m x^p e^{2D}\].
     double: Vec<Vec<f64>>,
-    /// `product[m][i][j]` = E\[(1 + x y)^m x^i y^j e^{D_0 + D_1}\], x and y independent.
+    /// `product[m][i][j]` = E\[(v + x_0 x_1)^m x_0^i x_1^j e^{D_0 + D_1}\].
     product: Vec<Vec<Vec<f64>>>,
     factorials: Vec<f64>,
 }
 
 impl Tables {
     fn new<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, highest: usize) -> Self {
-        let [square, first, slope] = law.expect(|d, z| {
+        let unit = law.unit();
+        let v = law.k2() / (unit * unit);
+        let [square, first, slope] = law.expect(|d, x| {
             let e = d.exp_m1();
-            [e * e, e - d, z * e]
+            [e * e, e - d, x * e]
         });
         let single = law.moments(highest + 2, f64::exp);
         let mixed = law.moments(highest, |d| d.exp() * d.exp_m1());
@@ -84,7 +86,7 @@ impl Tables {
         let mut double = vec![law.moments(2 * highest, |d| (2.0 * d).exp())];
         for m in 0..highest {
             let last = &double[m];
-            double.push((0..last.len().saturating_sub(2)).map(|p| last[p] + last[p + 2]).collect());
+            double.push((0..last.len().saturating_sub(2)).map(|p| v * last[p] + last[p + 2]).collect());
         }
         let size = highest + 3;
         let outer = |i: usize| (0..size).map(|j| single[i] * single[j]).collect::<Vec<_>>();
@@ -92,22 +94,21 @@ impl Tables {
         for m in 0..highest {
             let last = &product[m];
             let size = last.len() - 1;
-            let row = |i: usize| (0..size).map(|j| last[i][j] + last[i + 1][j + 1]).collect::<Vec<_>>();
+            let row = |i: usize| (0..size).map(|j| v * last[i][j] + last[i + 1][j + 1]).collect::<Vec<_>>();
             product.push((0..size).map(row).collect());
         }
         let mut factorials = vec![1.0];
         for k in 1..=highest {
             factorials.push(factorials[k - 1] * k as f64);
         }
-        let deviation = law.deviation();
-        Self { deviation, square, first, slope, single, mixed, double, product, factorials }
+        Self { unit, square, first, slope, single, mixed, double, product, factorials }
     }
 
     /// E\[(R − 1)² | N = `order`\].
     fn square_at(&self, order: usize, roulette: Roulette) -> f64 {
         let n = order as f64;
         let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let weight = |k: usize| roulette.weight(k as u32) * (sign(k) * self.deviation.powi(k as i32));
+        let weight = |k: usize| roulette.weight(k as u32) * (sign(k) * self.unit.powi(k as i32));
         let weights: Vec<f64> = (0..=order).map(weight).collect();
 
         let (mut same, mut different) = (self.square, self.first * self.first);
@@ -127,12 +128,12 @@ impl Tables {
         (same + n * different) / (n + 1.0)
     }
 
-    /// E\[e^{2a} \[s^k t^l\] (1 + (s + t) a + s t (1 + a²))^n\]: the signs (−1)^{k+l} are in the weights.
+    /// E\[e^{2a} \[s^k t^l\] (1 + (s + t) a + s t (v + a²))^n\]: the signs (−1)^{k+l} are in the weights.
     fn same_pivot(&self, n: usize, k: usize, l: usize) -> f64 {
         self.multinomials(n, k, l).map(|(m, count)| count * self.double[m][k + l - 2 * m]).sum()
     }
 
-    /// E\[e^{a+b} \[s^k t^l\] (1 + s (a − b)) (1 + t (b − a)) (1 + s a + t b + s t (1 + a b))^n\].
+    /// E\[e^{a+b} \[s^k t^l\] (1 + s (a − b)) (1 + t (b − a)) (1 + s a + t b + s t (v + a b))^n\].
     fn different_pivots(&self, n: usize, k: usize, l: usize) -> f64 {
         let shifted = |k: usize, l: usize, i: usize, j: usize| -> f64 {
             self.multinomials(n, k, l).map(|(m, count)| count * self.product[m][k - m + i][l - m + j]).sum()

@@ -4,6 +4,7 @@ mod build;
 mod cells;
 mod erased;
 mod exact;
+mod progressive;
 
 use erased::{AnyField, AnyPieces, Erased};
 use fairflight_laws::Unit;
@@ -33,6 +34,8 @@ struct Facts {
     variance: &'static str,
     /// What was chosen for it, in words.
     chosen: Option<String>,
+    /// Whether estimates must be drawn one after another, since each learns from those before it.
+    sequential: bool,
 }
 
 impl Beyond {
@@ -46,6 +49,12 @@ impl Beyond {
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.facts.kind
+    }
+
+    /// Whether estimates must be drawn one after another, since each learns from those before it.
+    #[must_use]
+    pub fn is_sequential(&self) -> bool {
+        self.facts.sequential
     }
 
     /// How its variance is known, in words.

@@ -16,9 +16,21 @@ pub use table::{Cell, Column, Table};
 use super::result::Claim;
 use crate::result::Provenance;
 use serde::Serialize;
+use std::path::PathBuf;
+
+/// An OpenVDB fog volume.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    /// The file.
+    pub file: PathBuf,
+    /// The grid; without it, the first float grid.
+    pub grid: Option<String>,
+    /// A factor in front of the voxel values \[1/length\].
+    pub scale: f64,
+}
 
 /// The choices of whoever asks for a document.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Fewer points and samples.
     pub quick: bool,
@@ -26,6 +38,8 @@ pub struct Options {
     pub seed: u64,
     /// The threads that measure, for the record: no number but a time depends on them.
     pub threads: usize,
+    /// A volume to be studied as well; only some reports take one.
+    pub vdb: Option<Volume>,
 }
 
 /// A whole report. All its texts are plain: writers escape what their format needs, and typeset σ_t and its like.

@@ -1,6 +1,6 @@
 //! A medium and one ray through it: what the curves of the report are about.
 
-use super::Volume;
+use crate::report::document::Volume;
 use super::maximum::Maximum;
 use crate::Failure;
 use crate::plan::{AnyMedium, AnyProfile, MediumLibrary};
