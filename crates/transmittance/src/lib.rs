@@ -66,11 +66,8 @@ mod theory;
 mod tracking;
 mod woodcock;
 
-<<<<<<< HEAD
 #[cfg(test)]
 mod seed_ray_tests;
-=======
->>>>>>> combs
 pub use adaptive_ratio::{AdaptiveRatio, FloorError};
 pub use bidirectional::{Bidirectional, Unidirectional};
 pub use combs::{

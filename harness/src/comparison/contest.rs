@@ -32,12 +32,8 @@ impl Contest {
 /// Each ray is looked at once by a pilot with variates of its own; look-ups of pilots are not charged to estimates.
 #[must_use]
 pub fn facts(set: &RaySet, seed: u64) -> Vec<Facts> {
-    let pilots: Vec<Pilot> = set
-        .rays
-        .par_iter()
-        .enumerate()
-        .map(|(i, ray)| pilot(ray, derive_seed(seed, i as u64)))
-        .collect();
+    let pilots: Vec<Pilot> =
+        set.rays.par_iter().enumerate().map(|(i, ray)| pilot(ray, derive_seed(seed, i as u64))).collect();
     let mut experience = Experience::default();
     if let Some(last) = pilots.last() {
         experience.observe(last);

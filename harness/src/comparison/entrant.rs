@@ -137,7 +137,9 @@ pub fn entrants() -> Vec<Entrant> {
     let in_cells = |entrant: Entrant| Entrant { needs_cells: true, ..entrant };
     vec![
         published("ratio tracking", |ray, _| double(ray.majorant, ControlSpec::None)),
-        published("track length", |ray, _| Parameters::Spec(EstimatorSpec::Woodcock { majorant: ray.majorant })),
+        published("track length", |ray, _| {
+            Parameters::Spec(EstimatorSpec::Woodcock { majorant: ray.majorant })
+        }),
         published("residual ratio, global mean", |ray, facts| {
             double(2.0 * ray.majorant, ControlSpec::Constant(facts.mean))
         }),

@@ -36,7 +36,12 @@ impl RaySet {
     ///
     /// # Errors
     /// If σ_t cannot be integrated along one of them.
-    pub fn of(name: &str, profiles: Vec<AnyProfile>, majorant: f64, tolerance: Tolerance) -> Result<Self, Failure> {
+    pub fn of(
+        name: &str,
+        profiles: Vec<AnyProfile>,
+        majorant: f64,
+        tolerance: Tolerance,
+    ) -> Result<Self, Failure> {
         const PRACTICALLY_EMPTY: f64 = 1e-3;
         let rays: Result<Vec<TestRay>, Failure> = profiles
             .into_par_iter()

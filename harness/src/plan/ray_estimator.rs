@@ -115,7 +115,9 @@ impl RayEstimator {
         let kind = match self {
             Self::DoubleParticle(tracking) => Some(tracking.control),
             Self::SingleParticle(tracking) => Some(tracking.control),
-            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) | Self::Beyond(_) => None,
+            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) | Self::Beyond(_) => {
+                None
+            }
         };
         let control = match kind {
             Some(RayControl::Explorers(count)) => AnyControl::Explorers(

@@ -26,7 +26,8 @@ fn report(
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
     if arguments.vdb.is_some() && !kind.takes_volume {
-        let takers: Vec<&str> = REPORTS.iter().filter(|kind| kind.takes_volume).map(|kind| kind.name).collect();
+        let takers: Vec<&str> =
+            REPORTS.iter().filter(|kind| kind.takes_volume).map(|kind| kind.name).collect();
         return Err(Failure::refused(format!(
             "report {}: --vdb is an option of {} only",
             kind.name,

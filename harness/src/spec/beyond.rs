@@ -250,7 +250,9 @@ impl BeyondSpec {
                     Some(cells) => {
                         // A single bound beside the cells would be a claim that nobody uses.
                         if let Some(majorant) = object.optional("majorant") {
-                            return Err(majorant.reject("cells have majorants of their own: give one of the two"));
+                            return Err(
+                                majorant.reject("cells have majorants of their own: give one of the two")
+                            );
                         }
                         BoundsSpec::Cells(CellsSpec::read(&cells)?)
                     }
@@ -274,9 +276,9 @@ impl BeyondSpec {
                 Self::AdaptiveRatio { majorant: majorant()?, floor: object.required("floor")?.positive()? }
             }
             "regular" => Self::Regular,
-            "hybrid" => {
-                Self::Hybrid { majorant: object.optional("majorant").map(|node| node.non_negative()).transpose()? }
-            }
+            "hybrid" => Self::Hybrid {
+                majorant: object.optional("majorant").map(|node| node.non_negative()).transpose()?,
+            },
             "jackknife" => Self::Jackknife { teeth: teeth()? },
             "naive" => Self::Naive { teeth: teeth()? },
             "progressive_majorant" => {
@@ -290,10 +292,10 @@ impl BeyondSpec {
         let pivot = object.optional("pivot");
         let teeth = match (object.optional("teeth"), pivot) {
             (Some(teeth), None) => TeethSpec::Given(teeth.integer(1, MOST)? as u32),
-            (Some(_), Some(pivot)) => return Err(pivot.reject("is for the rule of `teeth`: give one of the two")),
-            (None, pivot) => {
-                TeethSpec::Rule { pivot: pivot.map(|node| node.non_negative()).transpose()? }
+            (Some(_), Some(pivot)) => {
+                return Err(pivot.reject("is for the rule of `teeth`: give one of the two"));
             }
+            (None, pivot) => TeethSpec::Rule { pivot: pivot.map(|node| node.non_negative()).transpose()? },
         };
         let matching = flag(object, "endpoint_matching")?;
         let order = object.optional("order");
@@ -343,7 +345,9 @@ impl BeyondSpec {
                 "cells are given along one ray, but a scene has many: use jittered_ratio with a majorant"
             }
             Self::Hybrid { .. } => "hybrid chooses for one ray, but a scene has many",
-            Self::ProgressiveMajorant { .. } => "progressive_majorant learns along one ray, but a scene has many",
+            Self::ProgressiveMajorant { .. } => {
+                "progressive_majorant learns along one ray, but a scene has many"
+            }
             _ => return None,
         })
     }
@@ -361,7 +365,8 @@ impl CellsSpec {
             return match node.integer(1, MOST) {
                 Ok(count) => Ok(Self::Count(count as u32)),
                 Err(_) => {
-                    Err(node.refuse("must be a number of cells, or an object of edges, minorants and majorants"))
+                    Err(node
+                        .refuse("must be a number of cells, or an object of edges, minorants and majorants"))
                 }
             };
         }

@@ -6,16 +6,14 @@ use super::progressive::Progressive;
 use super::{Beyond, Facts, cells};
 use crate::Failure;
 use crate::plan::{AnyProfile, Field, FieldJob, KnownField};
-use crate::spec::{
-    BeyondSpec, BoundsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec,
-};
+use crate::spec::{BeyondSpec, BoundsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec};
 use fairflight_media::{Bounded, BoundedInCells, Vacuum};
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{
     AdaptiveRatio, Bidirectional, Choice, Comb, CombShape, Experience, GeneralisedPoisson, Hybrid, Jackknife,
     JitteredRatio, JitteredRatioInCells, NextFlight, NextFlightVersion, PSeries, PSeriesVersion, Pilot,
-    ProgressiveMajorant, RayMarching, ResidualCells, Roulette, RunningCumulant, Telescoping, Unidirectional,
-    UnbiasedRayMarching, teeth_for,
+    ProgressiveMajorant, RayMarching, ResidualCells, Roulette, RunningCumulant, Telescoping,
+    UnbiasedRayMarching, Unidirectional, teeth_for,
 };
 use std::sync::{Arc, Mutex};
 
@@ -61,7 +59,10 @@ impl Beyond {
     #[must_use]
     pub fn hybrid(experience: &Experience, length: f64, majorant: f64, budget: f64) -> Self {
         let hybrid = Hybrid::choose(experience, length, majorant * length, budget);
-        let facts = Facts { chosen: Some(chosen(&hybrid)), ..Facts::claiming("hybrid", majorant, "variance: that of what it chose") };
+        let facts = Facts {
+            chosen: Some(chosen(&hybrid)),
+            ..Facts::claiming("hybrid", majorant, "variance: that of what it chose")
+        };
         Self::of(ByMajorant { estimator: hybrid, majorant }, facts)
     }
 
@@ -104,8 +105,7 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
             Beyond::of(ByLookups(estimator), Facts::new("p_series", variance))
         }
         BeyondSpec::GeneralisedPoisson { pivot, rate } => {
-            let estimator =
-                GeneralisedPoisson::new(*pivot, *rate).map_err(|error| refuse(key, &error))?;
+            let estimator = GeneralisedPoisson::new(*pivot, *rate).map_err(|error| refuse(key, &error))?;
             Beyond::of(ByLookups(estimator), Facts::new("generalised_poisson", QUADRATURE))
         }
         BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette, segments } => {
@@ -152,12 +152,18 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
         BeyondSpec::Hybrid { majorant } => hybrid(*majorant, ray, key)?,
         BeyondSpec::Jackknife { teeth } => {
             let estimator = Jackknife::new(comb(*teeth, CombShape::Uniform, &at("teeth"))?);
-            Beyond::of(ByLookups(estimator), Facts::new("jackknife", "variance: quadrature over both offsets (a biased baseline)"))
+            Beyond::of(
+                ByLookups(estimator),
+                Facts::new("jackknife", "variance: quadrature over both offsets (a biased baseline)"),
+            )
         }
         BeyondSpec::Naive { teeth } => {
             let estimator = RayMarching::new(*teeth, fairflight_transmittance::Offset::Jittered)
                 .map_err(|error| refuse(&at("teeth"), &error))?;
-            Beyond::of(ByLookups(estimator), Facts::new("naive", "variance: quadrature over the offset (a biased baseline)"))
+            Beyond::of(
+                ByLookups(estimator),
+                Facts::new("naive", "variance: quadrature over the offset (a biased baseline)"),
+            )
         }
         BeyondSpec::ProgressiveMajorant { start } => {
             let learner = ProgressiveMajorant::new(*start).map_err(|error| refuse(&at("start"), &error))?;
@@ -194,7 +200,12 @@ fn next_flight(majorant: f64, version: NextFlightKind, key: &str) -> Result<Beyo
     })
 }
 
-fn in_cells<E>(kind: &'static str, estimator: E, spec: &crate::spec::CellsSpec, ray: Ray<'_>) -> Result<Beyond, Failure>
+fn in_cells<E>(
+    kind: &'static str,
+    estimator: E,
+    spec: &crate::spec::CellsSpec,
+    ray: Ray<'_>,
+) -> Result<Beyond, Failure>
 where
     ByCells<E>: Erased + 'static,
 {
@@ -267,7 +278,12 @@ fn always_on() -> Result<Roulette, Failure> {
     Roulette::new(0.0).map_err(|error| refuse("estimator.roulette", &error))
 }
 
-fn in_segments(comb: Comb, roulette: Roulette, segments: u32, key: &str) -> Result<UnbiasedRayMarching, Failure> {
+fn in_segments(
+    comb: Comb,
+    roulette: Roulette,
+    segments: u32,
+    key: &str,
+) -> Result<UnbiasedRayMarching, Failure> {
     UnbiasedRayMarching::new(comb, roulette)
         .in_segments(segments)
         .map_err(|error| refuse(&format!("{key}.segments"), &error))
@@ -340,7 +356,8 @@ fn hybrid(majorant: Option<f64>, ray: Ray<'_>, key: &str) -> Result<Beyond, Fail
     let mut beyond = Beyond::hybrid(&experience, profile.length(), majorant, Hybrid::USUAL_BUDGET);
     if let Some(chosen) = &mut beyond.facts.chosen {
         let lookups = u64::from(PILOTS) * Pilot::lookups(majorant * profile.length());
-        chosen.push_str(&format!(", by {PILOTS} pilots of {lookups} look-ups together, which are not charged"));
+        chosen
+            .push_str(&format!(", by {PILOTS} pilots of {lookups} look-ups together, which are not charged"));
     }
     Ok(beyond)
 }
@@ -349,7 +366,8 @@ fn hybrid(majorant: Option<f64>, ray: Ray<'_>, key: &str) -> Result<Beyond, Fail
 fn chosen(hybrid: &Hybrid) -> String {
     match hybrid.choice() {
         Choice::Marching(marching) => {
-            let matched = if marching.comb().shape() == CombShape::EndpointMatched { ", ends matched" } else { "" };
+            let matched =
+                if marching.comb().shape() == CombShape::EndpointMatched { ", ends matched" } else { "" };
             format!(
                 "chosen: unbiased ray marching, {} segment(s) of {} teeth{matched}, P = {:.4}",
                 marching.segments(),
@@ -357,7 +375,9 @@ fn chosen(hybrid: &Hybrid) -> String {
                 marching.roulette().going_on()
             )
         }
-        Choice::Jittered(jittered) => format!("chosen: jittered ratio tracking, epsilon = {}", jittered.epsilon()),
+        Choice::Jittered(jittered) => {
+            format!("chosen: jittered ratio tracking, epsilon = {}", jittered.epsilon())
+        }
     }
 }
 

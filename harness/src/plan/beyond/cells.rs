@@ -7,7 +7,10 @@ use crate::spec::CellsSpec;
 use fairflight_media::{BoundCell, InCells, IntervalBounds, Vacuum};
 
 /// The cells of a spec on a profile.
-pub(super) fn cells(spec: &CellsSpec, profile: &AnyProfile) -> Result<InCells<Vacuum, Vec<BoundCell>>, Failure> {
+pub(super) fn cells(
+    spec: &CellsSpec,
+    profile: &AnyProfile,
+) -> Result<InCells<Vacuum, Vec<BoundCell>>, Failure> {
     let cells = match spec {
         CellsSpec::Count(count) => found(*count as usize, profile)?,
         CellsSpec::Given { edges, minorants, majorants } => given(edges, minorants, majorants, profile)?,
@@ -25,7 +28,9 @@ fn found(count: usize, profile: &AnyProfile) -> Result<Vec<BoundCell>, Failure> 
         AnyProfile::Homogeneous(ray) => ray.equal_cells(count),
         AnyProfile::AnalyticCosine(ray) => ray.equal_cells(count),
         AnyProfile::Voxels(ray) => ray.equal_cells(count),
-        AnyProfile::Expression(_) | AnyProfile::ExpressionMedium(_) => return Err(unbounded("an expression")),
+        AnyProfile::Expression(_) | AnyProfile::ExpressionMedium(_) => {
+            return Err(unbounded("an expression"));
+        }
         AnyProfile::Perlin(_) => return Err(unbounded("Perlin noise")),
     })
 }

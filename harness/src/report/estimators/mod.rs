@@ -30,7 +30,9 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
         environment.provenance(options.seed),
     );
     document.unsound = seed.unsound.into_iter().chain(plane.unsound).collect();
-    document.unsound.extend(standings.iter().flat_map(|standings| &standings.rows).filter_map(|row| row.unsound.clone()));
+    document
+        .unsound
+        .extend(standings.iter().flat_map(|standings| &standings.rows).filter_map(|row| row.unsound.clone()));
     document.sections = plane.sections;
     document.sections.insert(1, seed.section);
     document.sections.extend(standings.into_iter().map(|standings| standings.section));

@@ -134,11 +134,13 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
         y: grid.tightnesses.clone(),
         values: bouts[shape * points..(shape + 1) * points].iter().map(|bouts| of(bouts)).collect(),
     };
-    let panels =
-        |of: &dyn Fn(&[Bout]) -> Option<f64>| (0..SHAPES.len()).map(|shape| panel(shape, of)).collect::<Vec<_>>();
+    let panels = |of: &dyn Fn(&[Bout]) -> Option<f64>| {
+        (0..SHAPES.len()).map(|shape| panel(shape, of)).collect::<Vec<_>>()
+    };
     let x = || Axis::linear("transmittance [1]").within(0.0, 1.0);
     let y = || Axis::logarithmic("tightness of the majorant [1]");
-    let best = |bouts: &[Bout]| (0..bouts.len()).min_by(|&a, &b| price(&bouts[a]).total_cmp(&price(&bouts[b])));
+    let best =
+        |bouts: &[Bout]| (0..bouts.len()).min_by(|&a, &b| price(&bouts[a]).total_cmp(&price(&bouts[b])));
     let mut wins: Vec<(&'static str, usize)> = players.iter().map(|player| (player.name, 0)).collect();
     for bouts in bouts {
         if let Some(winner) = best(bouts) {
@@ -150,7 +152,8 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
         panels: (0..SHAPES.len())
             .map(|shape| {
                 let one = panel(shape, &|_| None);
-                let values = bouts[shape * points..(shape + 1) * points].iter().map(|bouts| best(bouts)).collect();
+                let values =
+                    bouts[shape * points..(shape + 1) * points].iter().map(|bouts| best(bouts)).collect();
                 Panel { label: one.label, x: one.x, y: one.y, values }
             })
             .collect(),
@@ -159,13 +162,15 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
             isolines: vec![1.0, 10.0, 1e2, 1e4, 1e6, 1e8],
             panels: (0..SHAPES.len())
                 .map(|shape| {
-                    panel(shape, &|bouts| best(bouts).map(|winner| price(&bouts[0]) / price(&bouts[winner]))).values
+                    panel(shape, &|bouts| best(bouts).map(|winner| price(&bouts[0]) / price(&bouts[winner])))
+                        .values
                 })
                 .collect(),
         }),
     };
     wins.sort_by_key(|&(_, cells)| std::cmp::Reverse(cells));
-    let mut winner_map = HeatMap::new("plane-winners", "Who wins the canonical plane, per look-up", x(), y(), winners);
+    let mut winner_map =
+        HeatMap::new("plane-winners", "Who wins the canonical plane, per look-up", x(), y(), winners);
     winner_map.caption = format!(
         "The estimator with the least variance times look-ups at each point, and how much it gains over ratio tracking (lines). Tightness is \
          the greatest extinction over the majorant. {} of {} points are won by {}.",
@@ -185,19 +190,34 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let (table, unsound) = summary(players, bouts);
     overview.tables = vec![table];
 
-    let mut prices = Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator");
-    let mut quantities = Section::new("plane-quantities", "The canonical plane: variance and look-ups of each estimator");
+    let mut prices =
+        Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator");
+    let mut quantities =
+        Section::new("plane-quantities", "The canonical plane: variance and look-ups of each estimator");
     for (e, player) in players.iter().enumerate() {
         let id = player.name.to_lowercase().replace(", ", "-").replace([' ', ','], "-");
         let map = |quantity: &str, title: &str, isolines: Vec<f64>, of: &dyn Fn(&Bout) -> f64| {
             let panels = panels(&|bouts| Some(of(&bouts[e])).filter(|value| *value > 0.0));
             let content = Content::Values { colours: Axis::logarithmic(title), isolines, panels };
-            HeatMap::new(&format!("plane-{quantity}-{id}"), &format!("{}: {title}", player.name), x(), y(), content)
+            HeatMap::new(
+                &format!("plane-{quantity}-{id}"),
+                &format!("{}: {title}", player.name),
+                x(),
+                y(),
+                content,
+            )
         };
         let decades = |from: i32, to: i32| (from..=to).map(|decade| 10_f64.powi(decade)).collect::<Vec<_>>();
         prices.heat_maps.push(map("price", "Var · look-ups/T² [1]", decades(-12, 6), &price));
-        quantities.heat_maps.push(map("variance", "Var/T² [1]", decades(-14, 6), &|bout| bout.relative_variance));
-        quantities.heat_maps.push(map("lookups", "look-ups [1]", vec![1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0], &|bout| bout.lookups));
+        quantities
+            .heat_maps
+            .push(map("variance", "Var/T² [1]", decades(-14, 6), &|bout| bout.relative_variance));
+        quantities.heat_maps.push(map(
+            "lookups",
+            "look-ups [1]",
+            vec![1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0],
+            &|bout| bout.lookups,
+        ));
     }
     Plane { sections: vec![overview, prices, quantities], wins, cells: bouts.len(), unsound }
 }
@@ -222,10 +242,8 @@ fn summary(players: &[Entrant], bouts: &[Vec<Bout>]) -> (Table, Vec<String>) {
     for (e, player) in players.iter().enumerate() {
         let mut gains: Vec<f64> = bouts.iter().map(|bouts| price(&bouts[0]) / price(&bouts[e])).collect();
         gains.sort_unstable_by(f64::total_cmp);
-        let won = bouts
-            .iter()
-            .filter(|bouts| bouts.iter().all(|other| price(other) >= price(&bouts[e])))
-            .count();
+        let won =
+            bouts.iter().filter(|bouts| bouts.iter().all(|other| price(other) >= price(&bouts[e]))).count();
         let scores: Vec<f64> = bouts
             .iter()
             .map(|bouts| &bouts[e])
@@ -237,7 +255,10 @@ fn summary(players: &[Entrant], bouts: &[Vec<Bout>]) -> (Table, Vec<String>) {
             .collect();
         let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
         if z.abs() > 6.0 {
-            unsound.push(format!("{} on the canonical plane: means are off by {z:.1} standard errors", player.name));
+            unsound.push(format!(
+                "{} on the canonical plane: means are off by {z:.1} standard errors",
+                player.name
+            ));
         }
         table.rows.push(vec![
             Cell::text(player.name),

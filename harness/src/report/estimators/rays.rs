@@ -88,13 +88,19 @@ fn unsound(name: &str, set: &str, bouts: &[Bout]) -> Option<String> {
     let scores: Vec<f64> =
         bouts.iter().filter(mild).map(|bout| (bout.relative_mean - 1.0) / bout.mean_error).collect();
     let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
-    (z.abs() > CRITICAL)
-        .then(|| format!("{name} on the {set} rays: its mean is off by {z:.1} standard errors over {} rays", scores.len()))
+    (z.abs() > CRITICAL).then(|| {
+        format!(
+            "{name} on the {set} rays: its mean is off by {z:.1} standard errors over {} rays",
+            scores.len()
+        )
+    })
 }
 
 fn section(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Section {
-    let mut section =
-        Section::new(&format!("rays-{}", arena.id), &format!("{} random rays: {}", arena.set.rays.len(), arena.set.name));
+    let mut section = Section::new(
+        &format!("rays-{}", arena.id),
+        &format!("{} random rays: {}", arena.set.rays.len(), arena.set.name),
+    );
     section.text = vec![
         arena.description.clone(),
         format!(
@@ -132,8 +138,10 @@ fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
             .collect::<Vec<_>>()
     };
     chart.curves = vec![
-        Curve::method("per look-up").with_marks(marks(&|row| (row.per_lookup.mean, Some(row.per_lookup.interval)))),
-        Curve::method("per second").with_marks(marks(&|row| (row.per_second.mean, Some(row.per_second.interval)))),
+        Curve::method("per look-up")
+            .with_marks(marks(&|row| (row.per_lookup.mean, Some(row.per_lookup.interval)))),
+        Curve::method("per second")
+            .with_marks(marks(&|row| (row.per_second.mean, Some(row.per_second.interval)))),
         Curve::method("worst ray, per look-up").with_marks(marks(&|row| (row.per_lookup.worst, None))),
         Curve::reference("ratio tracking", [(0.0, 1.0), (rows.len() as f64 + 1.0, 1.0)]),
     ];

@@ -129,9 +129,15 @@ pub(super) fn study(run: &Run<'_>) -> Result<SeedRay, Failure> {
             if bout.is_closed {
                 Cell::Number(bout.relative_variance)
             } else {
-                Cell::measured(bout.relative_variance, around(bout.relative_variance, 1.96 * bout.variance_error))
+                Cell::measured(
+                    bout.relative_variance,
+                    around(bout.relative_variance, 1.96 * bout.variance_error),
+                )
             },
-            Cell::measured(bout.measured_variance, around(bout.measured_variance, 1.96 * bout.variance_error)),
+            Cell::measured(
+                bout.measured_variance,
+                around(bout.measured_variance, 1.96 * bout.variance_error),
+            ),
             Cell::maybe(row.figure.as_ref().map(|figure| figure.variance)),
             agrees.map_or(Cell::Empty, Cell::Flag),
             Cell::Number(price(bout)),
@@ -200,7 +206,8 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
     let build = |spec: EstimatorSpec| AnyEstimator::build(&spec, &ray.profile);
     let beyond = |spec: BeyondSpec| build(EstimatorSpec::Beyond(spec));
     let double = |sampling, control| build(EstimatorSpec::DoubleParticle { sampling, control });
-    let explorers = |count, sigma: f64| double(SamplingSpec::Constant(sigma), ControlSpec::Explorers { count });
+    let explorers =
+        |count, sigma: f64| double(SamplingSpec::Constant(sigma), ControlSpec::Explorers { count });
     let next_flight = |version| beyond(BeyondSpec::NextFlight { majorant: 1.0, version });
     let series = |version| beyond(BeyondSpec::PSeries { version, pivot: Some(LENGTH) });
     let comb = |teeth, comb, roulette, segments| {
@@ -214,7 +221,11 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
     let published = |name, estimator, figure| Row { name, ours: false, estimator, figure, remark: "" };
     let ours = |name, estimator, figure| Row { name, ours: true, estimator, figure, remark: "" };
     Ok(vec![
-        published("track length", build(EstimatorSpec::Woodcock { majorant: 1.0 })?, figure(29.4, 0.05, 5.21, 1e6)),
+        published(
+            "track length",
+            build(EstimatorSpec::Woodcock { majorant: 1.0 })?,
+            figure(29.4, 0.05, 5.21, 1e6),
+        ),
         published(
             "ratio tracking",
             double(SamplingSpec::Constant(1.0), ControlSpec::None)?,
@@ -289,7 +300,11 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
                 figure(0.00110, 5e-6, 24.5, 1e6),
             )
         },
-        published("unbiased ray marching, 8 teeth", comb(8, CombKind::Uniform, usual, 1)?, figure(6.7, 0.05, 10.6, 1e6)),
+        published(
+            "unbiased ray marching, 8 teeth",
+            comb(8, CombKind::Uniform, usual, 1)?,
+            figure(6.7, 0.05, 10.6, 1e6),
+        ),
         published(
             "unbiased ray marching, 15 teeth",
             comb(15, CombKind::Uniform, usual, 1)?,
@@ -324,7 +339,11 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
             )
         },
         ours("25 segments of one tooth, tuned", comb(1, CombKind::Uniform, tuned(0.05), 25)?, None),
-        published("jackknife, 2 x 8 (biased)", beyond(BeyondSpec::Jackknife { teeth: 8 })?, figure(0.74, 0.005, 16.0, 1e6)),
+        published(
+            "jackknife, 2 x 8 (biased)",
+            beyond(BeyondSpec::Jackknife { teeth: 8 })?,
+            figure(0.74, 0.005, 16.0, 1e6),
+        ),
         published(
             "jackknife, 2 x 25 (biased)",
             beyond(BeyondSpec::Jackknife { teeth: 25 })?,

@@ -53,7 +53,8 @@ fn smooth(run: &Run<'_>) -> Result<Arena, Failure> {
         id: "smooth",
         set: RaySet::of("smooth", profiles, 1.0, Tolerance::to(1e-11))?,
         effort: effort(run, 16_384, true),
-        description: "Smooth: random chords of szirmay-kalos-2017 eq. 21, at least 4 long, majorant 1.".to_owned(),
+        description: "Smooth: random chords of szirmay-kalos-2017 eq. 21, at least 4 long, majorant 1."
+            .to_owned(),
     })
 }
 
@@ -73,14 +74,14 @@ pub(super) fn rough_profile(source: &mut Seeded) -> Result<PiecewiseConstant, Fa
     let scale = THICKNESS / (heights.iter().sum::<f64>() * spacing);
     let edges = (0..=CELLS).map(|i| if i == CELLS { LENGTH } else { i as f64 * spacing }).collect();
     let sigma_t = heights.iter().map(|height| (height * scale).min(1.0)).collect();
-    PiecewiseConstant::new(edges, sigma_t).map_err(|error| Failure::refused(format!("rough profile: {error}")))
+    PiecewiseConstant::new(edges, sigma_t)
+        .map_err(|error| Failure::refused(format!("rough profile: {error}")))
 }
 
 fn rough(run: &Run<'_>) -> Result<Arena, Failure> {
     let mut source = Seeded::new(run.seed(PART, 1));
-    let profiles: Result<Vec<AnyProfile>, Failure> = (0..rays(run))
-        .map(|_| Ok(AnyProfile::PiecewiseConstant(rough_profile(&mut source)?)))
-        .collect();
+    let profiles: Result<Vec<AnyProfile>, Failure> =
+        (0..rays(run)).map(|_| Ok(AnyProfile::PiecewiseConstant(rough_profile(&mut source)?))).collect();
     Ok(Arena {
         id: "rough",
         set: RaySet::of("rough", profiles?, 1.0, Tolerance::to(1e-11))?,
