@@ -7,7 +7,7 @@ use crate::spec::{
     BeyondSpec, BoundsSpec, CellsSpec, CombKind, ControlSpec, EstimatorSpec, NextFlightKind, PSeriesKind,
     RouletteSpec, SamplingSpec, TeethSpec,
 };
-use fairflight_transmittance::{Experience, Hybrid, Roulette};
+use fairflight_transmittance::{Choice, CombShape, Experience, Hybrid, Roulette};
 
 /// What an entrant may know beside the ray: nothing of it comes from the variates that will estimate.
 #[derive(Clone, Debug, Default)]
@@ -54,12 +54,38 @@ impl Entrant {
         }
     }
 
-    /// What it runs as on a ray, where that is an experiment's estimator of fixed parameters.
+    /// The hybrid that it is on a ray, if it is one.
+    #[must_use]
+    pub fn hybrid(&self, ray: &TestRay, facts: &Facts) -> Option<Hybrid> {
+        match (self.parameters)(ray, facts) {
+            Parameters::Spec(_) => None,
+            Parameters::Hybrid { budget } => {
+                let length = ray.profile.length();
+                Some(Hybrid::choose(&facts.experience, length, ray.majorant * length, budget))
+            }
+        }
+    }
+
+    /// What it runs as on a ray, as an experiment's estimator; a hybrid as what it chose.
     #[must_use]
     pub fn spec(&self, ray: &TestRay, facts: &Facts) -> Option<EstimatorSpec> {
         match (self.parameters)(ray, facts) {
             Parameters::Spec(spec) => Some(spec),
-            Parameters::Hybrid { .. } => None,
+            Parameters::Hybrid { .. } => Some(EstimatorSpec::Beyond(match self.hybrid(ray, facts)?.choice() {
+                Choice::Marching(marching) => BeyondSpec::UnbiasedRayMarching {
+                    teeth: TeethSpec::Given(marching.comb().teeth()),
+                    comb: match marching.comb().shape() {
+                        CombShape::EndpointMatched => CombKind::EndpointMatched,
+                        _ => CombKind::Uniform,
+                    },
+                    roulette: RouletteSpec::Stop(marching.roulette().stop_probability()),
+                    segments: marching.segments(),
+                },
+                Choice::Jittered(jittered) => BeyondSpec::JitteredRatio {
+                    bounds: BoundsSpec::Majorant(ray.majorant),
+                    epsilon: jittered.epsilon(),
+                },
+            })),
         }
     }
 }

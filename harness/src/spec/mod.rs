@@ -11,6 +11,7 @@ mod medium;
 mod node;
 mod profile;
 mod scene;
+mod written;
 
 pub use beyond::{
     BeyondSpec, BoundsSpec, CellsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec,

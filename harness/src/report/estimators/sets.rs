@@ -2,11 +2,11 @@
 
 use crate::Failure;
 use crate::comparison::{Effort, RaySet, chords};
-use crate::plan::{AnyMedium, AnyProfile};
+use crate::plan::AnyProfile;
 use crate::report::document::Volume;
 use crate::report::run::Run;
 use crate::spec::{MediumKind, MediumSpec};
-use fairflight_media::{Bounds, Medium, PerlinParameters, PiecewiseConstant, Tolerance};
+use fairflight_media::{Bounds, PerlinParameters, PiecewiseConstant, Tolerance};
 use fairflight_sources::{Seeded, UniformSource};
 use glam::DVec3;
 
@@ -113,7 +113,8 @@ fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
     let kind = MediumKind::Vdb { file: volume.file.clone(), grid: volume.grid.clone(), scale: volume.scale };
     let (medium, bounds) = run.media.build(&MediumSpec { kind, bounds: None }, "medium")?;
     let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 3))?;
-    let majorant = upper_bound(&medium)?;
+    let majorant =
+        medium.upper_bound().ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;
     Ok(Arena {
         id: "vdb",
         set: RaySet::of("vdb", profiles, majorant, Tolerance::to(1e-11))?,
@@ -123,12 +124,4 @@ fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
             volume.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
         ),
     })
-}
-
-fn upper_bound(medium: &AnyMedium) -> Result<f64, Failure> {
-    let bound = match medium {
-        AnyMedium::Voxels(voxels) => voxels.upper_bound(),
-        _ => None,
-    };
-    bound.ok_or_else(|| Failure::refused("medium: declares no majorant"))
 }
