@@ -54,6 +54,7 @@ media!(
     perlin,
     voxels,
     expression,
+    series,
     freeflight,
     paths,
     vpl,

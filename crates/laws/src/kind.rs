@@ -13,12 +13,35 @@ pub enum Kind {
     LineIntegral,
     /// The biased baseline.
     RayMarching,
+    /// Next flight, after delta or ratio tracking.
+    NextFlight,
+    /// Ratio tracking and next flight combined over one walk.
+    Unidirectional,
+    /// The same over a walk from either end.
+    Bidirectional,
+    /// The power series about a pivot.
+    PSeries,
+    /// A single term of the power series.
+    GeneralisedPoisson,
+    /// Ratio tracking whose rate follows what it found last.
+    AdaptiveRatio,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Woodcock, Self::DoubleParticle, Self::SingleParticle, Self::LineIntegral, Self::RayMarching];
+    pub const ALL: [Self; 11] = [
+        Self::Woodcock,
+        Self::DoubleParticle,
+        Self::SingleParticle,
+        Self::LineIntegral,
+        Self::RayMarching,
+        Self::NextFlight,
+        Self::Unidirectional,
+        Self::Bidirectional,
+        Self::PSeries,
+        Self::GeneralisedPoisson,
+        Self::AdaptiveRatio,
+    ];
 
     /// The name in an experiment.
     #[must_use]
@@ -29,6 +52,12 @@ impl Kind {
             Self::SingleParticle => "single_particle",
             Self::LineIntegral => "line_integral",
             Self::RayMarching => "ray_marching",
+            Self::NextFlight => "next_flight",
+            Self::Unidirectional => "unidirectional",
+            Self::Bidirectional => "bidirectional",
+            Self::PSeries => "p_series",
+            Self::GeneralisedPoisson => "generalised_poisson",
+            Self::AdaptiveRatio => "adaptive_ratio",
         }
     }
 
@@ -56,12 +85,25 @@ impl Kind {
                 Self::SingleParticle => &["single particle", "terminating", "adaptive"],
                 Self::LineIntegral => &["line integral"],
                 Self::RayMarching => &["ray marching"],
+                Self::NextFlight => &["next flight"],
+                Self::Unidirectional => &["unidirectional"],
+                Self::Bidirectional => &["bidirectional"],
+                Self::PSeries => &["p series"],
+                Self::GeneralisedPoisson => &["generalised poisson"],
+                Self::AdaptiveRatio => &["adaptive ratio"],
             }
+        };
+        // What another name begins or ends with.
+        let other = |kind: Self| match kind {
+            Self::SingleParticle => words.contains("adaptive ratio"),
+            Self::NextFlight => words.contains("p series"),
+            _ => false,
         };
         // A version of the single particle model is one also "below the extinction".
         let single = names(Self::SingleParticle).iter().any(|name| words.contains(name));
         Self::ALL
             .into_iter()
+            .filter(|&kind| !other(kind))
             .filter(|&kind| !(single && kind == Self::DoubleParticle && !words.contains("double particle")))
             .filter(|&kind| names(kind).iter().any(|name| words.contains(name)))
             .collect()
@@ -77,7 +119,9 @@ mod tests {
         assert_eq!(Kind::named_in("ratio_tracking"), [Kind::DoubleParticle]);
         assert_eq!(Kind::named_in("adaptive albedo 0.5 below the extinction"), [Kind::SingleParticle]);
         assert_eq!(Kind::named_in("woodcock, line integral"), [Kind::Woodcock, Kind::LineIntegral]);
-        assert_eq!(Kind::named_in("every sampler").len(), 5);
+        assert_eq!(Kind::named_in("adaptive ratio 0.1"), [Kind::AdaptiveRatio]);
+        assert_eq!(Kind::named_in("p_series_next_flight"), [Kind::PSeries]);
+        assert_eq!(Kind::named_in("every sampler").len(), Kind::ALL.len());
         assert!(Kind::named_in("clipped ray").is_empty());
     }
 }

@@ -6,6 +6,7 @@ mod freeflight;
 mod media;
 pub(crate) mod paths;
 mod phase;
+mod series;
 mod single_particle;
 mod specimen;
 mod vpl;
@@ -57,7 +58,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
+    /// Unique: `medium/estimator`, `series/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -141,6 +142,7 @@ pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
+    checks.extend(series::series());
     checks.extend(freeflight::free_flights());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());

@@ -12,6 +12,7 @@ mod majorant;
 mod paths;
 mod phase;
 mod sampling;
+mod series;
 mod trial;
 mod variance;
 mod vpl;
@@ -106,6 +107,7 @@ pub fn twins() -> Vec<Twin> {
     all.extend(majorant::twins());
     all.extend(sampling::twins());
     all.extend(line_integral::twins());
+    all.extend(series::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
     all.extend(phase::twins());
