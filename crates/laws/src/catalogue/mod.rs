@@ -1,5 +1,6 @@
 //! Every check by name: what `verify` runs.
 
+mod combs;
 mod estimators;
 mod exact;
 mod freeflight;
@@ -141,6 +142,7 @@ pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
+    checks.extend(combs::combs());
     checks.extend(freeflight::free_flights());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());

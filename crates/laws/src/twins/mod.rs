@@ -4,6 +4,7 @@
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
 mod collision_weights;
+mod combs;
 mod control;
 mod freeflight;
 mod line_integral;
@@ -106,6 +107,7 @@ pub fn twins() -> Vec<Twin> {
     all.extend(majorant::twins());
     all.extend(sampling::twins());
     all.extend(line_integral::twins());
+    all.extend(combs::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
     all.extend(phase::twins());

@@ -251,11 +251,6 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
             base = found.base;
             remaining = if level == 0 { base } else { remaining + found.difference };
             shares.push(probability * found.square);
-            println!(
-                "level {level} share {:e} sum {:e} unit {unit}",
-                shares[level as usize] * unit * unit,
-                sums[0] * unit * unit
-            );
             // Two levels in a row, since one may be small by chance; beyond, every level has the same T_0 and no difference.
             if level >= 2 && shares[level as usize - 1..].iter().all(|share| *share <= NEGLIGIBLE * sums[0]) {
                 for (sum, moment) in sums.iter_mut().zip(found.moments) {
