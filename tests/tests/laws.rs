@@ -52,6 +52,7 @@ media!(
     eq21_seed_ray,
     eq21_oblique_ray,
     perlin,
+    rough_cells,
     voxels,
     expression,
     series,

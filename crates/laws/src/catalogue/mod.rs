@@ -1,5 +1,6 @@
 //! Every check by name: what `verify` runs.
 
+mod combs;
 mod estimators;
 mod exact;
 mod freeflight;
@@ -143,6 +144,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
     checks.extend(series::series());
+    checks.extend(combs::combs());
     checks.extend(freeflight::free_flights());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());

@@ -4,6 +4,7 @@
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
 mod collision_weights;
+mod combs;
 mod control;
 mod freeflight;
 mod line_integral;
@@ -108,6 +109,7 @@ pub fn twins() -> Vec<Twin> {
     all.extend(sampling::twins());
     all.extend(line_integral::twins());
     all.extend(series::twins());
+    all.extend(combs::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
     all.extend(phase::twins());

@@ -2,21 +2,22 @@
 
 use fairflight_media::{Breakpoints, Extinction};
 
-/// How the teeth of a [`Comb`] are placed and corrected. Every shape is unbiased on every profile; they differ in variance.
+/// How the teeth of a [`Comb`] are placed and corrected. Every shape is unbiased on every profile; they differ in
+/// variance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CombShape {
     /// Equidistant teeth of equal weight, the comb of kettunen-2021.
     Uniform,
-    /// The uniform comb less h B_1(u) \[σ_t\], the first term of its error (the endpoint matching of kettunen-2021): it integrates a linear
-    /// profile exactly. Two shared look-ups, at the ends.
+    /// The uniform comb less h B_1(u) \[σ_t\], the first term of its error (the endpoint matching of kettunen-2021):
+    /// it integrates a linear profile exactly. Two shared look-ups, at the ends.
     EndpointMatched,
     /// Two terms, with slopes at the ends by one-sided differences over half a tooth. Four shared look-ups.
     Bernoulli2,
-    /// Three terms, with slopes and curvatures by one-sided differences over one tooth. Six shared look-ups. It pays where the
-    /// teeth resolve the profile, else it costs.
+    /// Three terms, with slopes and curvatures by one-sided differences over one tooth. Six shared look-ups. It pays
+    /// where the teeth resolve the profile, else it costs.
     Bernoulli3,
-    /// Equidistant teeth in the variable t of s = (3 t² − 2 t³) · length, weighted with ds/dt, which vanishes at both ends, so
-    /// that the profile looks periodic. No shared look-ups.
+    /// Equidistant teeth in the variable t of s = (3 t² − 2 t³) · length, weighted with ds/dt, which vanishes at both
+    /// ends, so that the profile looks periodic. No shared look-ups.
     Periodised,
 }
 
@@ -42,21 +43,22 @@ impl CombShape {
 ///
 /// > X(u) = h Σ_{j<M} σ_t(from + (j + u) h) − Σ_{k≤K} h^k/k! B_k(u) \[σ_t^(k−1)\],
 ///
-/// B_k the Bernoulli polynomials (u − 1/2; u² − u + 1/6; u³ − 3u²/2 + u/2) and K = 0 to 3 the order of the shape; derivatives are one-sided
-/// differences. X is a *positive* optical thickness.
+/// B_k the Bernoulli polynomials (u − 1/2; u² − u + 1/6; u³ − 3u²/2 + u/2) and K = 0 to 3 the order of the shape;
+/// derivatives are one-sided differences. X is a *positive* optical thickness.
 ///
-/// **Law.** E\[X(u)\] = ∫ σ_t for every profile that can be integrated. *Proof.* (j + u) h runs through tooth j's own h once
-/// while u runs through \[0, 1): the intervals of all teeth together are the whole. The corrections have the mean 0 whatever stands in the
-/// brackets, because ∫_0^1 B_k = 0 for k ≥ 1. The periodised comb is the uniform one for ∫_0^1 σ_t(s(t)) s'(t) dt, the same
-/// integral after a change of variables with s' = 6 t (1 − t) ≥ 0, s(0) = 0 and s(1) = 1.
+/// **Law.** E\[X(u)\] = ∫ σ_t for every profile that can be integrated. *Proof.* (j + u) h runs through tooth j's own
+/// h once while u runs through \[0, 1): the intervals of all teeth together are the whole. The corrections have the
+/// mean 0 whatever stands in the brackets, because ∫_0^1 B_k = 0 for k ≥ 1. The periodised comb is the uniform one
+/// for ∫_0^1 σ_t(s(t)) s'(t) dt, the same integral after a change of variables with s' = 6 t (1 − t) ≥ 0, s(0) = 0
+/// and s(1) = 1.
 ///
-/// **Variance.** By Euler and Maclaurin X(u) − ∫ σ_t = Σ_{k>K} h^k/k! B_k(u) \[σ_t^(k−1)\] for a smooth profile: k2 ~ h^(2K+2) while its
-/// ends differ. That assumes teeth that resolve the profile; below one tooth per feature the corrections only add to the
-/// variance.
+/// **Variance.** By Euler and Maclaurin X(u) − ∫ σ_t = Σ_{k>K} h^k/k! B_k(u) \[σ_t^(k−1)\] for a smooth profile: k2 ~
+/// h^(2K+2) while its ends differ. That assumes teeth that resolve the profile; below one tooth per feature the
+/// corrections only add to the variance.
 ///
-/// A piecewise linear control with its nodes one tooth apart is the same as [`CombShape::EndpointMatched`], to the last
-/// digit: what the control takes from the comb, its integral gives back, up to its ends. The same holds for any interpolation
-/// that is shifted with its nodes and reproduces constants.
+/// A piecewise linear control with its nodes one tooth apart is the same as [`CombShape::EndpointMatched`], to the
+/// last digit: what the control takes from the comb, its integral gives back, up to its ends. The same holds for any
+/// interpolation that is shifted with its nodes and reproduces constants.
 ///
 /// **Cost.** `teeth` look-ups per draw, [`CombShape`]'s shared ones once per interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,7 +147,8 @@ impl Comb {
         let step = (to - from) / f64::from(self.teeth);
         let at_end = if self.shape.shared() == 0 { 0.0 } else { field.sigma_t(to) };
         let jump = step * (at_end - start);
-        // The differences are taken over half a tooth, 2/h times a difference of values: h cancels, no step is too small.
+        // The differences are taken over half a tooth, 2/h times a difference of values: h cancels, no step is too
+        // small.
         let inner = |halves: f64| {
             let reach = 0.5 * halves * step;
             (field.sigma_t((from + reach).min(to)), field.sigma_t((to - reach).max(from)))
@@ -201,7 +204,8 @@ impl Comb {
         6.0 * step * sum
     }
 
-    /// The variates u at which a tooth stands on a breakpoint of the field in `[from, to]`: between them X(u) is smooth.
+    /// The variates u at which a tooth stands on a breakpoint of the field in `[from, to]`: between them X(u) is
+    /// smooth.
     pub(super) fn folded_breakpoints<F: Breakpoints>(&self, field: &F, prepared: &Prepared) -> Vec<f64> {
         let (from, length) = (prepared.from, prepared.to - prepared.from);
         let inside = |s: &f64| prepared.from < *s && *s < prepared.to;

@@ -53,8 +53,8 @@ impl<F: Breakpoints> Breakpoints for Deviation<'_, F> {
     }
 }
 
-/// Expectations of functions of D. Powers are those of x = D/max |D|, which are at most 1: their integrals are as exact as they
-/// need to be at any order.
+/// Expectations of functions of D. Powers are those of x = D/max |D|, which are at most 1: their integrals are as
+/// exact as they need to be at any order.
 pub(super) struct DeviationLaw<'a, F> {
     quadrature: RayQuadrature<Deviation<'a, F>>,
     mean: f64,

@@ -8,11 +8,13 @@ use fairflight_sources::UniformSource;
 
 /// cos((X_1 − X_2)/2) exp(−(X_1 + X_2)/2) of two independent combs.
 ///
-/// **Law.** None but for normal X: with complex exponents it is the real part of exp(−(1 + i) X_1/2) exp(−(1 − i) X_2/2), so that its expectation is
+/// **Law.** None but for normal X: with complex exponents it is the real part of exp(−(1 + i) X_1/2) exp(−(1 − i)
+/// X_2/2), so that its expectation is
 /// |E\[exp(−(1 + i) X/2)\]|², by cumulants T exp(k3/12 − k4/48 + …): k2 is gone, and for a normal X all else. [`Theory`] states the expectation it
 /// has instead, exactly.
 ///
-/// **Variance.** Half that of E\[(cos)² …\] in closed form: cos² = (1 + cos 2·)/2 gives E\[T̂²\] = (|E\[e^{−(1+i) X}\]|² + E\[e^{−X}\]²)/2.
+/// **Variance.** Half that of E\[(cos)² …\] in closed form: cos² = (1 + cos 2·)/2 gives E\[T̂²\] = (|E\[e^{−(1+i)
+/// X}\]|² + E\[e^{−X}\]²)/2.
 ///
 /// **Cost.** 2 M look-ups and the comb's shared ones, always. Estimates may be negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +77,8 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
                 lookups,
             };
         }
-        // z − 1 of z = E[exp((1 + i) D/2)], E[exp((1 + i) D)] and E[exp(D)]; E[D] = 0 is taken off where it would cancel.
+        // z − 1 of z = E[exp((1 + i) D/2)], E[exp((1 + i) D)] and E[exp(D)]; E[D] = 0 is taken off where it would
+        // cancel.
         let [half_re, half_im, full_re, full_im, plain] = law.expect(|d, _| {
             let [half_re, half_im] = exp_m1_of_diagonal(0.5 * d);
             let [full_re, full_im] = exp_m1_of_diagonal(d);
@@ -120,13 +123,13 @@ mod tests {
         let ray = seed_ray();
         for (teeth, bias, tolerance) in [(8, 0.029, 0.001), (12, 0.0012, 0.0001)] {
             let comb = Comb::new(teeth, CombShape::Uniform).unwrap();
-            let found = theory_of(&ray, &Jackknife::new(comb)).relative_mean - 1.0;
+            let found = theory_of(ray, &Jackknife::new(comb)).relative_mean - 1.0;
             assert_relative_eq!(found, bias, epsilon = tolerance);
             let predicted = Jackknife::predicted_bias(&comb.cumulants(&ray, 0.0, 20.0, Tolerance::TIGHT));
             assert_relative_eq!(predicted, found, max_relative = 0.1);
         }
         for (teeth, variance) in [(8, 0.74), (25, 0.0136)] {
-            let found = theory_of(&ray, &Jackknife::new(Comb::new(teeth, CombShape::Uniform).unwrap()));
+            let found = theory_of(ray, &Jackknife::new(Comb::new(teeth, CombShape::Uniform).unwrap()));
             assert_relative_eq!(found.relative_central[0], variance, max_relative = 0.01);
             assert_eq!(found.lookups, f64::from(2 * teeth));
         }

@@ -1,8 +1,9 @@
 //! Combs: randomly shifted quadratures of the optical thickness, and what makes an estimate of exp(−τ) of them.
 //!
-//! exp(−X) of a comb X is biased. Three ways remove the bias or most of it: a power series in the deviations of independent combs, stopped
-//! by a roulette ([`UnbiasedRayMarching`], kettunen-2021); a telescoping sum over finer and finer combs ([`Telescoping`],
-//! misso-2022); and a combination of two that is exact for normal deviations ([`Jackknife`], peters-2025, biased).
+//! exp(−X) of a comb X is biased. Three ways remove the bias or most of it: a power series in the deviations of
+//! independent combs, stopped by a roulette ([`UnbiasedRayMarching`], kettunen-2021); a telescoping sum over finer
+//! and finer combs ([`Telescoping`], misso-2022); and a combination of two that is exact for normal deviations
+//! ([`Jackknife`], peters-2025, biased).
 
 mod comb;
 mod deviation;

@@ -3,8 +3,8 @@
 use super::expected_order;
 use fairflight_sources::UniformSource;
 
-/// The orders that are taken for sure once the roulette goes on at all: K, and the c of the probability c/k of going on to
-/// order k (bhanot-1985; K = c = 2 in kettunen-2021).
+/// The orders that are taken for sure once the roulette goes on at all: K, and the c of the probability c/k of going
+/// on to order k (bhanot-1985; K = c = 2 in kettunen-2021).
 const SURE: u32 = 2;
 const C: f64 = 2.0;
 
@@ -12,8 +12,8 @@ const C: f64 = 2.0;
 ///
 /// > P(N ≥ 0) = 1, P(N ≥ 1) = P(N ≥ 2) = P, P(N ≥ k) = P Π_{i=3..k} 2/i = P 2^{k−1}/k!,
 ///
-/// with P = 1 − p_Z, p_Z the probability of stopping at order 0. A series Σ_k a_k/k! is estimated without bias by Σ_{k≤N} a_k w_k,
-/// w_k = 1/(k! P(N ≥ k)) = 2^{1−k}/P, if N is independent of the a_k.
+/// with P = 1 − p_Z, p_Z the probability of stopping at order 0. A series Σ_k a_k/k! is estimated without bias by
+/// Σ_{k≤N} a_k w_k, w_k = 1/(k! P(N ≥ k)) = 2^{1−k}/P, if N is independent of the a_k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roulette {
     /// P = 1 − p_Z.
@@ -55,15 +55,17 @@ impl Roulette {
 
     /// The roulette for combs of variance `k2`: P = sqrt(k2/(2 (β − 2/3))) = 0.445 sqrt(k2), within \[10^-3, 1/2\].
     ///
-    /// **Derivation.** By [`predicted_relative_variance`](super::predicted_relative_variance) variance times look-ups is proportional to
-    /// (1 − 2P/3 + k2/(2P)) (1 + βP), β = E\[N\]/P = 2 + (e² − 5)/2. To first order in P and k2/P that is 1 + (β − 2/3) P + k2/(2P), least at the P above.
+    /// **Derivation.** By [`predicted_relative_variance`](super::predicted_relative_variance) variance times look-ups
+    /// is proportional to (1 − 2P/3 + k2/(2P)) (1 + βP), β = E\[N\]/P = 2 + (e² − 5)/2. To first order in P and k2/P
+    /// that is 1 + (β − 2/3) P + k2/(2P), least at the P above.
     ///
-    /// **The range.** Below P = 10^-3 the corrections cost βP < 0.32 % of the look-ups, so that nothing is left to save, while a k2
-    /// that turns out larger than believed costs k2²/(2P). Above 1/2 the expansion says nothing: k2 > 1.26 is outside
-    /// the domain of the law, where combs need more teeth or more segments and not another P.
+    /// **The range.** Below P = 10^-3 the corrections cost βP < 0.32 % of the look-ups, so that nothing is left to
+    /// save, while a k2 that turns out larger than believed costs k2²/(2P). Above 1/2 the expansion says nothing: k2
+    /// > 1.26 is outside the domain of the law, where combs need more teeth or more segments and not another P.
     ///
-    /// `k2` from anything that is independent of the estimate (earlier rays: [`RunningCumulant`](super::RunningCumulant)) leaves the
-    /// estimate unbiased. A `k2` that is not a number, or not positive, counts as 0.
+    /// `k2` from anything that is independent of the estimate (earlier rays:
+    /// [`RunningCumulant`](super::RunningCumulant)) leaves the estimate unbiased. A `k2` that is not a number, or not
+    /// positive, counts as 0.
     #[must_use]
     pub fn tuned(k2: f64) -> Self {
         let [least, greatest] = Self::TUNED_RANGE;
@@ -107,10 +109,10 @@ impl Roulette {
 
     /// Draws N: one variate, and one more for each order from the third on that is tried.
     ///
-    /// The published codes compare one variate with all P(N ≥ k). On the lattice of multiples of 2^-53 that is wrong from about order
-    /// 20 on, where P(N ≥ k) falls below the lattice's step, and the variate 0 never stops: terms (D/2)^k of such orders are
-    /// not small for a comb of large deviation D. A variate for every decision makes each probability exact to
-    /// 2^-53, and costs 0.22 variates more for P = 0.1.
+    /// The published codes compare one variate with all P(N ≥ k). On the lattice of multiples of 2^-53 that is wrong
+    /// from about order 20 on, where P(N ≥ k) falls below the lattice's step, and the variate 0 never stops: terms
+    /// (D/2)^k of such orders are not small for a comb of large deviation D. A variate for every decision makes each
+    /// probability exact to 2^-53, and costs 0.22 variates more for P = 0.1.
     #[inline]
     pub fn sample_order<S: UniformSource + ?Sized>(&self, source: &mut S) -> u32 {
         if source.next_uniform() >= self.going_on {

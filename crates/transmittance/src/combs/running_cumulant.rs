@@ -2,9 +2,9 @@
 
 /// The running mean of k2, the variance of one draw of a comb, over rays that came before.
 ///
-/// A roulette tuned by it ([`Roulette::tuned`](super::Roulette::tuned)) leaves an estimate unbiased if every observation is independent of the variates
-/// of that estimate: observe *after* a ray is estimated, use it for the *next*. Merged in a fixed order the result
-/// does not depend on threads.
+/// A roulette tuned by it ([`Roulette::tuned`](super::Roulette::tuned)) leaves an estimate unbiased if every
+/// observation is independent of the variates of that estimate: observe *after* a ray is estimated, use it for the
+/// *next*. Merged in a fixed order the result does not depend on threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunningCumulant {
     count: u64,

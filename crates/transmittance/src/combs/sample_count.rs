@@ -28,8 +28,9 @@ pub fn expected_order(stop_probability: f64, sure: u32, c: f64) -> f64 {
 ///
 /// > M = max(1, ⌊N_CMF/(1 + 0.31945) + 1/2⌋), N_CMF = ⌈((0.015 + t) (0.65 + t) (60.3 + t))^{1/3}⌉,
 ///
-/// so that M times the expected number of combs, 1.31945, is what the power series of georgiev-2019 (its cumulative mass function
-/// reached to 99 %) would have looked up. The division is missing where the rule is quoted without its code. Unbiasedness needs no particular M.
+/// so that M times the expected number of combs, 1.31945, is what the power series of georgiev-2019 (its cumulative
+/// mass function reached to 99 %) would have looked up. The division is missing where the rule is quoted without its
+/// code. Unbiasedness needs no particular M.
 #[must_use]
 pub fn teeth_for(optical_thickness: f64) -> u32 {
     let t = optical_thickness;

@@ -4,15 +4,17 @@
 //!
 //! > R = 1/(N + 1) Σ_j A_j, A_j = e^{D_j} Σ_{k≤N} w_k m_k({D_i − D_j}_{i≠j}).
 //!
-//! E\[R\] = 1, so that Var R = Σ_N P(N) E\[(R − 1)² | N\], and by symmetry E\[(R − 1)² | N\] = (E\[A_0'²\] + N E\[A_0' A_1'\])/(N + 1) with
-//! A' = A − 1 = (e^D − 1) + e^D Σ_{k≥1} w_k m_k. Taking the 1 off first is what keeps the digits of a small variance.
+//! E\[R\] = 1, so that Var R = Σ_N P(N) E\[(R − 1)² | N\], and by symmetry E\[(R − 1)² | N\] = (E\[A_0'²\] + N
+//! E\[A_0' A_1'\])/(N + 1) with A' = A − 1 = (e^D − 1) + e^D Σ_{k≥1} w_k m_k. Taking the 1 off first is what keeps
+//! the digits of a small variance.
 //!
 //! **Symmetric polynomials.** Σ_k s^k e_k({D_i − a}) = Π_i (1 + s (D_i − a)), and over one D
 //!
 //! > E\[(1 + s (D − a)) (1 + t (D − b))\] = 1 − s a − t b + s t (v + a b).
 //!
-//! Hence E\[A_0'²\] takes the coefficients of s^k t^l in (1 − (s + t) a + s t (v + a²))^N, a = D_0, and E\[A_0' A_1'\] those in
-//! (1 + s (b − a)) (1 + t (a − b)) (1 − s a − t b + s t (v + a b))^{N−1}, a = D_0, b = D_1, which are sums of products of
+//! Hence E\[A_0'²\] takes the coefficients of s^k t^l in (1 − (s + t) a + s t (v + a²))^N, a = D_0, and E\[A_0'
+//! A_1'\] those in (1 + s (b − a)) (1 + t (a − b)) (1 − s a − t b + s t (v + a b))^{N−1}, a = D_0, b = D_1, which are
+//! sums of products of
 //!
 //! > E\[D^p e^{2D}\], E\[D^p e^D\]:
 //!

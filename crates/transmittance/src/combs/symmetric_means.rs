@@ -9,9 +9,9 @@ pub(super) const IN_PLACE: usize = 16;
 ///
 /// **Law.** For independent y with the mean y̅, E\[m_k\] = y̅^k: the U-statistic of the k-th power (kettunen-2021).
 ///
-/// **Cost.** O(N²): a value y_n changes the means of n − 1 values to m_k + (k/n) (m_{k−1} y_n − m_k), from the highest k down, since of all
-/// k-tuples of n values the share k/n contains the last. The n counts from 1: public code that counts from 0, or divides by
-/// the final N, is biased (+1.6 % on the seed ray with 8 teeth).
+/// **Cost.** O(N²): a value y_n changes the means of n − 1 values to m_k + (k/n) (m_{k−1} y_n − m_k), from the
+/// highest k down, since of all k-tuples of n values the share k/n contains the last. The n counts from 1: public
+/// code that counts from 0, or divides by the final N, is biased (+1.6 % on the seed ray with 8 teeth).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricMeans {
     means: SmallVec<[f64; IN_PLACE]>,

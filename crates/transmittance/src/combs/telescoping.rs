@@ -7,27 +7,29 @@ use fairflight_sources::UniformSource;
 
 /// exp(−X) of a comb of k teeth, and the difference that a comb of 2^l k teeth makes, at a random level l.
 ///
-/// With T_l = exp(−X) of a comb of 2^l k teeth, E\[T_l\] → T, and T = E\[T_0\] + Σ_{l≥1} E\[T_l − T_{l−1}\]. Level l is drawn with
-/// p_l = r (1 − r)^l, and only its difference is computed:
+/// With T_l = exp(−X) of a comb of 2^l k teeth, E\[T_l\] → T, and T = E\[T_0\] + Σ_{l≥1} E\[T_l − T_{l−1}\]. Level l
+/// is drawn with p_l = r (1 − r)^l, and only its difference is computed:
 ///
 /// > T̂ = T_0 + Δ_l/p_l (Δ_0 = 0).
 ///
-/// One comb of 2^l k teeth with the variate u contains 2^l combs of k teeth (variates (u + a)/2^l), over which T_0 is averaged, and two of
-/// 2^{l−1} k teeth, the even and the odd ones. With X_even and X_odd their thicknesses, that of all is their mean, and
+/// One comb of 2^l k teeth with the variate u contains 2^l combs of k teeth (variates (u + a)/2^l), over which T_0 is
+/// averaged, and two of 2^{l−1} k teeth, the even and the odd ones. With X_even and X_odd their thicknesses, that of
+/// all is their mean, and
 ///
 /// > Δ_l = e^{−X} − (e^{−X_even} + e^{−X_odd})/2 = −2 e^{−X} sinh²((X_odd − X_even)/4):
 ///
-/// never positive, and without cancellation at any level. Bernoulli's multiplication theorem, mean_a B_n((u + a)/N) = B_n(u)/N^n,
-/// makes corrected combs nest as uniform ones do.
+/// never positive, and without cancellation at any level. Bernoulli's multiplication theorem, mean_a B_n((u + a)/N) =
+/// B_n(u)/N^n, makes corrected combs nest as uniform ones do.
 ///
-/// **Law.** Unbiased for every r in (0, 1) on a profile whose Riemann sums converge. The published codes stop at a level of 4, a
-/// bias (1e-5 on the seed ray), and draw the level from one variate, whose lattice ends the levels in its own way; here a variate decides
-/// on each level.
+/// **Law.** Unbiased for every r in (0, 1) on a profile whose Riemann sums converge. The published codes stop at a
+/// level of 4, a bias (1e-5 on the seed ray), and draw the level from one variate, whose lattice ends the levels in
+/// its own way; here a variate decides on each level.
 ///
-/// **Variance.** All moments are sums over levels of integrals over u. Δ_l is quadratic in X_odd − X_even, the error of a comb of step
-/// h ~ 2^{−l}, so that E\[Δ_l²\] ~ 2^{−bl} goes like its fourth power: b = 4 where σ_t jumps, or differs at its ends (then endpoint matching
-/// helps); 8 where only its slope does; 2 where it is noise finer than the teeth, whose error is that of h^{1/2}; faster than any power
-/// where it is smooth and matched at all orders. The variance is finite if 1 − r > 2^{−b}.
+/// **Variance.** All moments are sums over levels of integrals over u. Δ_l is quadratic in X_odd − X_even, the error
+/// of a comb of step h ~ 2^{−l}, so that E\[Δ_l²\] ~ 2^{−bl} goes like its fourth power: b = 4 where σ_t jumps, or
+/// differs at its ends (then endpoint matching helps); 8 where only its slope does; 2 where it is noise finer than
+/// the teeth, whose error is that of h^{1/2}; faster than any power where it is smooth and matched at all orders. The
+/// variance is finite if 1 − r > 2^{−b}.
 ///
 /// **Cost.** k r/(2r − 1) look-ups, infinite for r ≤ 1/2, which the constructor refuses; and the comb's shared ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +54,8 @@ pub enum TelescopingError {
 }
 
 impl Telescoping {
-    /// The estimator with `teeth` teeth at level 0, whose levels are geometric: level l with probability r (1 − r)^l, r = `level_ratio`.
+    /// The estimator with `teeth` teeth at level 0, whose levels are geometric: level l with probability r (1 − r)^l,
+    /// r = `level_ratio`.
     ///
     /// # Errors
     /// If `teeth` is 0, or r not in (1/2, 1).
@@ -67,8 +70,9 @@ impl Telescoping {
         }
     }
 
-    /// The r that makes variance times cost least where E\[Δ_l²\] ~ 2^{−bl}: variance and cost of level l are then in proportion to
-    /// 2^{−bl}/(1 − r)^l and 2^l (1 − r)^l, and equal shares of both, 1 − r = 2^{−(b+1)/2}, are the optimum (rhee-2015). 0.82 for b = 4, 0.65 for b = 2.
+    /// The r that makes variance times cost least where E\[Δ_l²\] ~ 2^{−bl}: variance and cost of level l are then in
+    /// proportion to 2^{−bl}/(1 − r)^l and 2^l (1 − r)^l, and equal shares of both, 1 − r = 2^{−(b+1)/2}, are the
+    /// optimum (rhee-2015). 0.82 for b = 4, 0.65 for b = 2.
     #[must_use]
     pub fn matched_ratio(decay: f64) -> f64 {
         debug_assert!(decay > 1.0, "finite variance at finite cost needs a decay above 1: {decay}");
@@ -100,8 +104,8 @@ impl Telescoping {
         self.level_ratio * (1.0 - self.level_ratio).powi(level as i32)
     }
 
-    /// The combs inside that of `level` with the variate u: the mean of `each`(X) over those of level 0, and the difference
-    /// Δ_level times exp(`offset`).
+    /// The combs inside that of `level` with the variate u: the mean of `each`(X) over those of level 0, and the
+    /// difference Δ_level times exp(`offset`).
     #[inline]
     fn nested<F: Extinction>(
         &self,
@@ -154,8 +158,8 @@ const MOST_LOOKUPS: f64 = 3e6;
 /// A share of the variance that is negligible.
 const NEGLIGIBLE: f64 = 1e-13;
 
-/// What one level adds: E\[b\] and E\[Δ\], E\[Δ²\]/p² and E\[(b + Δ/p)^n\], n = 2 … 8, in units of the deviation at level 0, b the T_0 of
-/// that level less 1.
+/// What one level adds: E\[b\] and E\[Δ\], E\[Δ²\]/p² and E\[(b + Δ/p)^n\], n = 2 … 8, in units of the deviation at
+/// level 0, b the T_0 of that level less 1.
 struct Level {
     base: f64,
     difference: f64,
@@ -204,9 +208,9 @@ impl Telescoping {
 }
 
 impl<F: Breakpoints> ClosedForm<F> for Telescoping {
-    /// All moments where the levels that matter can be summed. Where they cannot (a profile with kinks has some at every level), the
-    /// variance alone, its tail continued as a geometric series, whose sum is the error that is stated; infinite where the levels add
-    /// more and more.
+    /// All moments where the levels that matter can be summed. Where they cannot (a profile with kinks has some at
+    /// every level), the variance alone, its tail continued as a geometric series, whose sum is the error that is
+    /// stated; infinite where the levels add more and more.
     fn theory(
         &self,
         quadrature: &mut RayQuadrature<F>,
@@ -251,12 +255,8 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
             base = found.base;
             remaining = if level == 0 { base } else { remaining + found.difference };
             shares.push(probability * found.square);
-            println!(
-                "level {level} share {:e} sum {:e} unit {unit}",
-                shares[level as usize] * unit * unit,
-                sums[0] * unit * unit
-            );
-            // Two levels in a row, since one may be small by chance; beyond, every level has the same T_0 and no difference.
+            // Two levels in a row, since one may be small by chance; beyond, every level has the same T_0 and no
+            // difference.
             if level >= 2 && shares[level as usize - 1..].iter().all(|share| *share <= NEGLIGIBLE * sums[0]) {
                 for (sum, moment) in sums.iter_mut().zip(found.moments) {
                     *sum += beyond(level) * moment;
@@ -315,13 +315,14 @@ mod tests {
 
     #[test]
     fn seed_ray_with_and_without_endpoint_matching() {
-        // Measured 0.0487 with a cut-off at level 4 and p_4 = (1 − r)^4, 0.00110 with endpoint matching. The ends of the ray differ, so that
-        // without matching every level adds 0.625 times what the one before did: those beyond the fourth, 7e-4.
+        // Measured 0.0487 with a cut-off at level 4 and p_4 = (1 − r)^4, 0.00110 with endpoint matching. The ends of
+        // the ray differ, so that without matching every level adds 0.625 times what the one before did: those beyond
+        // the fourth, 7e-4.
         let ray = seed_ray();
         for (shape, variance, lookups) in
             [(CombShape::Uniform, 0.0494, 22.5), (CombShape::EndpointMatched, 0.001_098, 24.5)]
         {
-            let theory = theory_of(&ray, &Telescoping::new(20, 0.9, shape).unwrap());
+            let theory = theory_of(ray, &Telescoping::new(20, 0.9, shape).unwrap());
             assert_relative_eq!(theory.relative_central[0], variance, max_relative = 0.001);
             assert_relative_eq!(theory.lookups, lookups, max_relative = 1e-12);
         }
@@ -332,7 +333,7 @@ mod tests {
         for shape in [CombShape::Uniform, CombShape::EndpointMatched] {
             let estimator = Telescoping::new(2, Telescoping::matched_ratio(4.0), shape).unwrap();
             agrees(&tent(), &estimator, 200_000, &mut Seeded::new(11));
-            assert!(theory_of(&tent(), &estimator).relative_variance_error < 1e-4);
+            assert!(theory_of(tent(), &estimator).relative_variance_error < 1e-4);
         }
     }
 
@@ -349,7 +350,7 @@ mod tests {
     #[test]
     fn a_constant_profile_has_no_variance() {
         let field = Constant::new(0.7, 3.0).unwrap();
-        let found = theory_of(&field, &Telescoping::new(3, 0.8, CombShape::Uniform).unwrap());
+        let found = theory_of(field, &Telescoping::new(3, 0.8, CombShape::Uniform).unwrap());
         assert_eq!((found.relative_central[0], found.log_relative_variance), (0.0, f64::NEG_INFINITY));
     }
 

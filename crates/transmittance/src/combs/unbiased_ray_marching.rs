@@ -19,15 +19,15 @@ use smallvec::SmallVec;
 /// m_k the elementary symmetric means ([`SymmetricMeans`]). With a uniform comb and [`Roulette::KETTUNEN`] it is the
 /// estimator of the paper.
 ///
-/// **Law.** Unbiased on every profile. *Proof.* N is independent of all X, and X_j of the other X, so that E\[m_k | X_j\] = (X_j − τ)^k for k ≤ N;
-/// the roulette's weights make of the sum E\[Σ | X_j\] = Σ_k (X_j − τ)^k/k! = exp(X_j − τ), for every j, and exp(−X_j) cancels. No majorant is
-/// needed. Estimates may be negative.
+/// **Law.** Unbiased on every profile. *Proof.* N is independent of all X, and X_j of the other X, so that E\[m_k |
+/// X_j\] = (X_j − τ)^k for k ≤ N; the roulette's weights make of the sum E\[Σ | X_j\] = Σ_k (X_j − τ)^k/k! = exp(X_j
+/// − τ), for every j, and exp(−X_j) cancels. No majorant is needed. Estimates may be negative.
 ///
-/// **Segments.** [`Self::in_segments`] makes the product of independent estimates over equal parts of the ray. The second-order noise
-/// falls from k2²/(2P) to k2²/(2GP). A ray whose combs resolve it is better off in one piece.
+/// **Segments.** [`Self::in_segments`] makes the product of independent estimates over equal parts of the ray. The
+/// second-order noise falls from k2²/(2P) to k2²/(2GP). A ray whose combs resolve it is better off in one piece.
 ///
-/// **Variance.** Exact, by `second_moment`; [`predicted_relative_variance`] is the law of small deviations. Zero on a constant
-/// profile, and for endpoint matching on a linear one (not for the periodised comb).
+/// **Variance.** Exact, by `second_moment`; [`predicted_relative_variance`] is the law of small deviations. Zero on a
+/// constant profile, and for endpoint matching on a linear one (not for the periodised comb).
 ///
 /// **Cost.** G M (1 + E\[N\]) look-ups and the comb's shared ones; neighbouring segments share the one at their border.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,8 +88,8 @@ impl UnbiasedRayMarching {
         self.comb.shared_lookups(self.segments) + f64::from(self.comb.teeth()) * combs
     }
 
-    /// As [`TransmittanceEstimator::estimate`], and shows `earlier` the sample variance of the draws of each segment that had more than
-    /// one: k2 of a segment, without bias, at no look-up. For the roulettes of *later* estimates.
+    /// As [`TransmittanceEstimator::estimate`], and shows `earlier` the sample variance of the draws of each segment
+    /// that had more than one: k2 of a segment, without bias, at no look-up. For the roulettes of *later* estimates.
     pub fn estimate_and_observe<F: Extinction, S: UniformSource + ?Sized>(
         &self,
         field: &F,
@@ -263,7 +263,7 @@ mod tests {
             (25, CombShape::EndpointMatched, kettunen, 3.59e-4, 35.0),
             (25, CombShape::Bernoulli3, tuned(25, CombShape::Bernoulli3), 3.51e-4, 31.7),
         ] {
-            let theory = theory_of(&ray, &UnbiasedRayMarching::new(comb(teeth, shape), roulette));
+            let theory = theory_of(ray, &UnbiasedRayMarching::new(comb(teeth, shape), roulette));
             assert_relative_eq!(theory.relative_central[0], variance, max_relative = 0.006);
             assert_relative_eq!(theory.lookups, lookups, max_relative = 0.005);
             assert!(theory.relative_variance_error < 1e-9);
@@ -272,14 +272,15 @@ mod tests {
 
     #[test]
     fn segments_on_the_seed_ray() {
-        // Five combs of five teeth with endpoint matching, the stop probability of each its own: 1.49e-3 at 31.5. With one for all:
+        // Five combs of five teeth with endpoint matching, the stop probability of each its own: 1.49e-3 at 31.5.
+        // With one for all:
         let ray = seed_ray();
         let comb = comb(5, CombShape::EndpointMatched);
         let k2: f64 = (0..5)
             .map(|g| comb.cumulants(&ray, 4.0 * f64::from(g), 4.0 * f64::from(g + 1), Tolerance::TIGHT).k2)
             .sum();
         let estimator = UnbiasedRayMarching::new(comb, Roulette::tuned(k2 / 5.0)).in_segments(5).unwrap();
-        let theory = theory_of(&ray, &estimator);
+        let theory = theory_of(ray, &estimator);
         assert_relative_eq!(theory.relative_central[0], 1.49e-3, max_relative = 0.02);
         assert_relative_eq!(theory.lookups, 31.5, max_relative = 0.02);
     }
@@ -296,7 +297,8 @@ mod tests {
 
     #[test]
     fn the_variance_has_its_digits_however_small_it_is() {
-        // A line has uniform deviations; k2 falls by eight orders with each case. To leading order V = k2 (1 − P (1 − E[1/(N + 1) | N ≥ 2])).
+        // A line has uniform deviations; k2 falls by eight orders with each case. To leading order V = k2 (1 − P (1 −
+        // E[1/(N + 1) | N ≥ 2])).
         let average: f64 = (2..40)
             .map(|k| {
                 let all = Roulette::new(0.0).unwrap();
@@ -327,7 +329,7 @@ mod tests {
         for shape in [CombShape::Uniform, CombShape::EndpointMatched, CombShape::Bernoulli3] {
             let estimator = UnbiasedRayMarching::new(comb(4, shape), Roulette::new(0.2).unwrap());
             let estimator = estimator.in_segments(3).unwrap();
-            assert_eq!(theory_of(&field, &estimator).relative_central, [0.0; HIGHEST_MOMENT - 1]);
+            assert_eq!(theory_of(field, &estimator).relative_central, [0.0; HIGHEST_MOMENT - 1]);
             for _ in 0..100 {
                 let found = estimator.estimate(&field, &mut source);
                 assert_relative_eq!(found, (-2.1_f64).exp(), max_relative = 1e-14);
@@ -337,7 +339,7 @@ mod tests {
         let empty = Constant::new(0.7, 0.0).unwrap();
         let estimator = UnbiasedRayMarching::new(comb(4, CombShape::Bernoulli3), Roulette::KETTUNEN);
         assert_eq!(estimator.estimate(&empty, &mut source), 1.0);
-        assert_eq!(theory_of(&empty, &estimator).relative_central[0], 0.0);
+        assert_eq!(theory_of(empty, &estimator).relative_central[0], 0.0);
     }
 
     #[test]
