@@ -54,6 +54,7 @@ media!(
     perlin,
     voxels,
     expression,
+    cells,
     freeflight,
     paths,
     vpl,

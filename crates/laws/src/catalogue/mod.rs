@@ -1,5 +1,6 @@
 //! Every check by name: what `verify` runs.
 
+mod cells;
 mod estimators;
 mod exact;
 mod freeflight;
@@ -57,7 +58,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
+    /// Unique: `medium/estimator`, `cells/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -141,6 +142,7 @@ pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
+    checks.extend(cells::in_cells());
     checks.extend(freeflight::free_flights());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());
