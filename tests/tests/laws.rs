@@ -56,6 +56,7 @@ media!(
     voxels,
     expression,
     series,
+    cells,
     freeflight,
     paths,
     vpl,

@@ -5,7 +5,8 @@ use crate::medium_bounds::Boxes;
 use crate::{BoundCell, BoxBounds, FieldError, Line};
 use glam::DVec3;
 
-/// Minorant and majorant of a medium in equal boxes of a larger one, in the medium's own coordinates.
+/// Minorant and majorant of a medium in equal boxes of a larger one, in the medium's own coordinates (szirmay-kalos-2011; the walk from
+/// box to box is that of amanatides-1987, but for what it adds up).
 ///
 /// Building costs the medium's bounds in every box: for voxels one look-up per voxel. It holds two numbers per box
 /// ([`bytes`](Self::bytes)). Finer boxes have tighter bounds and more crossings: eight voxels a side are a start.

@@ -1,6 +1,7 @@
 //! Every check by name: what `verify` runs.
 
 mod combs;
+mod cells;
 mod estimators;
 mod exact;
 mod freeflight;
@@ -60,6 +61,7 @@ pub enum Effort {
 /// A named check.
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
+    /// Unique: `medium/estimator`, `cells/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -145,6 +147,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(media::on_every_medium());
     checks.extend(series::series());
     checks.extend(combs::combs());
+    checks.extend(cells::in_cells());
     checks.extend(freeflight::free_flights());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());

@@ -3,6 +3,7 @@
 //! A law that nothing can break tests nothing. Each statistical twin states its profile, its N and the |z| that it shows
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
+mod cells;
 mod collision_weights;
 mod combs;
 mod control;
@@ -103,6 +104,7 @@ impl std::fmt::Debug for Twin {
 #[must_use]
 pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
+    all.extend(cells::twins());
     all.extend(control::twins());
     all.extend(freeflight::twins());
     all.extend(majorant::twins());
