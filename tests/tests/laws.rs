@@ -55,6 +55,8 @@ media!(
     voxels,
     expression,
     freeflight,
+    spectral,
+    points,
     paths,
     vpl,
 );

@@ -6,8 +6,10 @@ mod freeflight;
 mod media;
 pub(crate) mod paths;
 mod phase;
+mod points;
 mod single_particle;
 mod specimen;
+mod spectral;
 mod vpl;
 
 use crate::{CheckResult, Kind, Run, hard_cases, twins};
@@ -57,7 +59,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
+    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -142,6 +144,8 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
     checks.extend(freeflight::free_flights());
+    checks.extend(spectral::spectral_flights());
+    checks.extend(points::point_sets());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());
     checks.extend(twins().into_iter().map(|twin| {

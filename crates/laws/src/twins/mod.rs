@@ -11,7 +11,9 @@ mod logarithm;
 mod majorant;
 mod paths;
 mod phase;
+mod points;
 mod sampling;
+mod spectral;
 mod trial;
 mod variance;
 mod vpl;
@@ -103,6 +105,8 @@ pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
     all.extend(control::twins());
     all.extend(freeflight::twins());
+    all.extend(spectral::twins());
+    all.extend(points::twins());
     all.extend(majorant::twins());
     all.extend(sampling::twins());
     all.extend(line_integral::twins());

@@ -2,7 +2,7 @@
 
 use super::digits::bits_53;
 use super::{PointSet, PointSetError};
-use crate::{Seeded, UniformSource, derive_seed};
+use crate::{Seeded, derive_seed};
 use sobol_burley::NUM_DIMENSIONS;
 use sobol_burley::parts::{owen_scramble_rev, sobol_rev};
 
@@ -71,6 +71,7 @@ impl PointSet for Sobol {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::UniformSource;
 
     /// Of 2^k points one lies in each of the 2^k rectangles of every shape: the first two coordinates are a (0, k, 2)-net.
     #[test]
