@@ -58,6 +58,8 @@ media!(
     series,
     cells,
     freeflight,
+    spectral,
+    points,
     paths,
     vpl,
 );

@@ -154,7 +154,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     }
 }
 
-fn examine<F, E>(
+pub(super) fn examine<F, E>(
     specimen: &Specimen<F>,
     sampler: &E,
     borders: &[f64],

@@ -9,8 +9,10 @@ mod media;
 pub(crate) mod paths;
 mod phase;
 mod series;
+mod points;
 mod single_particle;
 mod specimen;
+mod spectral;
 mod vpl;
 
 use crate::{CheckResult, Kind, Run, hard_cases, twins};
@@ -62,6 +64,7 @@ pub enum Effort {
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// Unique: `medium/estimator`, `cells/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
+    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
     /// `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -149,6 +152,8 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(combs::combs());
     checks.extend(cells::in_cells());
     checks.extend(freeflight::free_flights());
+    checks.extend(spectral::spectral_flights());
+    checks.extend(points::point_sets());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());
     checks.extend(twins().into_iter().map(|twin| {
