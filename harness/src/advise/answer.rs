@@ -112,7 +112,9 @@ impl Advice {
             estimator: entrant.name,
             spec: entrant.spec(&set.rays[middle], &facts[middle]).map(|spec| spec.written()),
             lookups: Spread::of(bouts.iter().map(|bout| bout.lookups).collect()),
-            relative_standard_error: Spread::of(bouts.iter().map(|bout| bout.relative_variance.sqrt()).collect()),
+            relative_standard_error: Spread::of(
+                bouts.iter().map(|bout| bout.relative_variance.sqrt()).collect(),
+            ),
             gain_per_lookup: Advantage::of(&per_lookup),
             gain_per_second: Advantage::of(&per_second),
         }

@@ -2,9 +2,13 @@
 
 use crate::comparison::TestRay;
 use crate::plan::{Field, FieldJob, KnownField};
-use crate::spec::{BeyondSpec, BoundsSpec, CombKind, ControlSpec, EstimatorSpec, RouletteSpec, SamplingSpec, TeethSpec};
+use crate::spec::{
+    BeyondSpec, BoundsSpec, CombKind, ControlSpec, EstimatorSpec, RouletteSpec, SamplingSpec, TeethSpec,
+};
 use fairflight_sources::{Seeded, UniformSource};
-use fairflight_transmittance::{Comb, CombShape, Forecast, Pilot, Roulette, UnbiasedRayMarching, predicted_relative_variance, teeth_for};
+use fairflight_transmittance::{
+    Comb, CombShape, Forecast, Pilot, Roulette, UnbiasedRayMarching, predicted_relative_variance, teeth_for,
+};
 
 /// What forecasts on a ray are made of.
 pub(super) struct Signs {
@@ -83,7 +87,13 @@ impl Signs {
         }
     }
 
-    fn marching(&self, teeth: TeethSpec, comb: CombKind, roulette: RouletteSpec, segments: u32) -> Option<Forecast> {
+    fn marching(
+        &self,
+        teeth: TeethSpec,
+        comb: CombKind,
+        roulette: RouletteSpec,
+        segments: u32,
+    ) -> Option<Forecast> {
         let rule = teeth_for(self.majorant * self.length);
         let teeth = match teeth {
             TeethSpec::Given(teeth) => teeth,
@@ -103,7 +113,8 @@ impl Signs {
         if k2 / f64::from(segments) > 1.0 {
             return None;
         }
-        let estimator = UnbiasedRayMarching::new(Comb::new(teeth, shape).ok()?, roulette).in_segments(segments).ok()?;
+        let estimator =
+            UnbiasedRayMarching::new(Comb::new(teeth, shape).ok()?, roulette).in_segments(segments).ok()?;
         Some(Forecast {
             relative_variance: predicted_relative_variance(k2, roulette, segments),
             lookups: estimator.expected_lookups(),

@@ -20,10 +20,13 @@ pub(crate) fn run(
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
     let question = question::Question::of(arguments, stdin)?;
-    let answer = environment.on_threads(arguments.threads, || trial::answer(&question, arguments.seed, environment))?;
+    let answer = environment
+        .on_threads(arguments.threads, || trial::answer(&question, arguments.seed, environment))?;
     // A person who does not see this has the JSON all the same.
     let _ = write!(stderr, "{}", answer.table());
-    let json = serde_json::to_string_pretty(&answer).map_err(|error| Failure::refused(format!("the answer: {error}")))?;
-    writeln!(stdout, "{json}").map_err(|error| Failure::NotWritten(format!("cannot write the answer: {error}")))?;
+    let json = serde_json::to_string_pretty(&answer)
+        .map_err(|error| Failure::refused(format!("the answer: {error}")))?;
+    writeln!(stdout, "{json}")
+        .map_err(|error| Failure::NotWritten(format!("cannot write the answer: {error}")))?;
     Ok(DONE)
 }

@@ -40,7 +40,8 @@ impl Question {
             Ok(Self { name, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
         };
         if let Some(file) = &arguments.vdb {
-            let kind = MediumKind::Vdb { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
+            let kind =
+                MediumKind::Vdb { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
             return question(file.display().to_string(), &MediumSpec { kind, bounds: None }, None);
         }
         let Some(file) = &arguments.medium else {
@@ -49,14 +50,14 @@ impl Question {
         let name = named(file);
         let in_file = |failure: Failure| failure.within(&name);
         let text = read(file, stdin).map_err(in_file)?;
-        let value: Value =
-            serde_json::from_str(&text).map_err(|error| in_file(Failure::refused(format!("not JSON: {error}"))))?;
+        let value: Value = serde_json::from_str(&text)
+            .map_err(|error| in_file(Failure::refused(format!("not JSON: {error}"))))?;
         if value.get("camera").is_some() {
             let overrides = SceneOverrides { samples_per_pixel: Some(1), seed: Some(arguments.seed) };
             let scene = SceneSpec::parse(&text, overrides).map_err(in_file)?;
-            let volume = scene
-                .medium
-                .ok_or_else(|| in_file(Failure::refused("medium: this scene has none, there is nothing to estimate")))?;
+            let volume = scene.medium.ok_or_else(|| {
+                in_file(Failure::refused("medium: this scene has none, there is nothing to estimate"))
+            })?;
             return question(name.clone(), &volume.medium, Some(scene.camera));
         }
         let spec = MediumSpec::read(&Node::root(&value)).map_err(in_file)?;
@@ -98,7 +99,8 @@ impl Question {
         let [columns, rows] = camera.resolution();
         let mut profiles = Vec::new();
         for _ in 0..self.rays * TRIES {
-            let pixel = [columns, rows].map(|side| ((source.next_uniform() * f64::from(side)) as u32).min(side - 1));
+            let pixel =
+                [columns, rows].map(|side| ((source.next_uniform() * f64::from(side)) as u32).min(side - 1));
             let line = camera.ray(pixel, [source.next_uniform(), source.next_uniform()]);
             let clip = self
                 .bounds

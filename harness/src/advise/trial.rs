@@ -73,7 +73,13 @@ pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) 
 }
 
 /// A forecast on every ray, or a trial on some.
-fn expect(entrant: Entrant, set: &RaySet, facts: &[Facts], signs: &[Signs], seed: u64) -> Result<Expected, Failure> {
+fn expect(
+    entrant: Entrant,
+    set: &RaySet,
+    facts: &[Facts],
+    signs: &[Signs],
+    seed: u64,
+) -> Result<Expected, Failure> {
     let forecasts: Option<Vec<f64>> = set
         .rays
         .iter()
@@ -102,7 +108,13 @@ fn log_price(relative_variance: f64, lookups: f64) -> f64 {
     relative_variance.max(1e-26).ln() + lookups.max(1.0).ln()
 }
 
-fn measure(entrant: Entrant, set: &RaySet, facts: &[Facts], effort: Effort, seed: u64) -> Result<Vec<Bout>, Failure> {
+fn measure(
+    entrant: Entrant,
+    set: &RaySet,
+    facts: &[Facts],
+    effort: Effort,
+    seed: u64,
+) -> Result<Vec<Bout>, Failure> {
     set.rays
         .par_iter()
         .zip(facts)

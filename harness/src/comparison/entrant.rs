@@ -71,21 +71,23 @@ impl Entrant {
     pub fn spec(&self, ray: &TestRay, facts: &Facts) -> Option<EstimatorSpec> {
         match (self.parameters)(ray, facts) {
             Parameters::Spec(spec) => Some(spec),
-            Parameters::Hybrid { .. } => Some(EstimatorSpec::Beyond(match self.hybrid(ray, facts)?.choice() {
-                Choice::Marching(marching) => BeyondSpec::UnbiasedRayMarching {
-                    teeth: TeethSpec::Given(marching.comb().teeth()),
-                    comb: match marching.comb().shape() {
-                        CombShape::EndpointMatched => CombKind::EndpointMatched,
-                        _ => CombKind::Uniform,
+            Parameters::Hybrid { .. } => {
+                Some(EstimatorSpec::Beyond(match self.hybrid(ray, facts)?.choice() {
+                    Choice::Marching(marching) => BeyondSpec::UnbiasedRayMarching {
+                        teeth: TeethSpec::Given(marching.comb().teeth()),
+                        comb: match marching.comb().shape() {
+                            CombShape::EndpointMatched => CombKind::EndpointMatched,
+                            _ => CombKind::Uniform,
+                        },
+                        roulette: RouletteSpec::Stop(marching.roulette().stop_probability()),
+                        segments: marching.segments(),
                     },
-                    roulette: RouletteSpec::Stop(marching.roulette().stop_probability()),
-                    segments: marching.segments(),
-                },
-                Choice::Jittered(jittered) => BeyondSpec::JitteredRatio {
-                    bounds: BoundsSpec::Majorant(ray.majorant),
-                    epsilon: jittered.epsilon(),
-                },
-            })),
+                    Choice::Jittered(jittered) => BeyondSpec::JitteredRatio {
+                        bounds: BoundsSpec::Majorant(ray.majorant),
+                        epsilon: jittered.epsilon(),
+                    },
+                }))
+            }
         }
     }
 }

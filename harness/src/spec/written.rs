@@ -11,7 +11,9 @@ use serde_json::{Map, Value, json};
 /// An object without the keys whose value is null.
 fn object(entries: Value) -> Value {
     match entries {
-        Value::Object(map) => Value::Object(map.into_iter().filter(|(_, value)| !value.is_null()).collect::<Map<_, _>>()),
+        Value::Object(map) => {
+            Value::Object(map.into_iter().filter(|(_, value)| !value.is_null()).collect::<Map<_, _>>())
+        }
         other => other,
     }
 }

@@ -1,15 +1,15 @@
 //! Every check by name: what `verify` runs.
 
-mod combs;
 mod cells;
+mod combs;
 mod estimators;
 mod exact;
 mod freeflight;
 mod media;
 pub(crate) mod paths;
 mod phase;
-mod series;
 mod points;
+mod series;
 mod single_particle;
 mod specimen;
 mod spectral;
@@ -62,10 +62,9 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `series/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
-    /// Unique: `medium/estimator`, `cells/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
-    /// Unique: `medium/estimator`, `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
-    /// `twin/name`, `hard/number name`.
+    /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`,
+    /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
+    /// `phase/name`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,

@@ -41,9 +41,9 @@ impl Dense {
             (bump * (0.5 + noise(i))) as f32
         };
         let values: Vec<f32> = (0..side * side * side).map(at).collect();
-        let range = values
-            .iter()
-            .fold((0.0, 0.0), |(low, high): (f64, f64), &value| (low.min(value.into()), high.max(value.into())));
+        let range = values.iter().fold((0.0, 0.0), |(low, high): (f64, f64), &value| {
+            (low.min(value.into()), high.max(value.into()))
+        });
         Self { values, side, range }
     }
 
@@ -107,8 +107,8 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     let side = run.quick_or(64, SIDE);
     // A cube of side 20, as thick as the sphere of eq. 21.
     let index_from_world = DAffine3::from_scale(DVec3::splat((side - 1) as f64 / 20.0));
-    let voxels =
-        Voxels::new(Dense::new(side, run.seed(PART, 1)), index_from_world, 0.4).map_err(|error| refuse(&error))?;
+    let voxels = Voxels::new(Dense::new(side, run.seed(PART, 1)), index_from_world, 0.4)
+        .map_err(|error| refuse(&error))?;
     let cube = Bounds::Box { min: DVec3::ZERO, max: DVec3::splat(20.0) };
     rows.add(&mut table, &format!("{side}³ voxels"), &voxels, &cube, &[1, 8, 16, 32, 64])?;
     run.advance();
@@ -222,11 +222,7 @@ fn theories<M: MediumBreakpoints>(ray: &Ray<&M>, cells: &[BoundCell]) -> [Theory
     let tau = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0];
     let residual = ResidualCells::new(1.0).expect("a rate of 1 is positive");
     let jittered = JitteredRatioInCells::new(0.25).expect("0.25 is positive and at most 1");
-    let whole = [BoundCell {
-        to: ray.length(),
-        minorant: 0.0,
-        majorant: ray.majorant(),
-    }];
+    let whole = [BoundCell { to: ray.length(), minorant: 0.0, majorant: ray.majorant() }];
     let mut of = |estimator: &dyn Fn(&mut Fenced<'_, M>) -> Theory, cells| {
         let field = InCells::new(ray, cells).expect("a grid's cells cover the ray");
         estimator(&mut quadrature.with_field(field))
@@ -244,7 +240,11 @@ type Fenced<'a, M> = RayQuadrature<InCells<&'a Ray<&'a M>, &'a [BoundCell]>>;
 /// The corners of the bounds in the medium's own coordinates.
 fn corners<M: Medium>(medium: &M, bounds: &Bounds) -> (DVec3, DVec3) {
     let local = |point| medium.local(Line { origin: point, direction: DVec3::X }).origin;
-    bounds.corners().into_iter().map(local).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-        (low.min(corner), high.max(corner))
-    })
+    bounds
+        .corners()
+        .into_iter()
+        .map(local)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
+            (low.min(corner), high.max(corner))
+        })
 }

@@ -42,7 +42,9 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
          majorant, is consistent: it falls all the same. Costs are those of all estimates of a mean together; pilots are not charged.",
         SAMPLES[SAMPLES.len() - 1]
     )];
-    for (k, (id, name, ray)) in (1..).zip([("smooth", "the seed ray", &smooth), ("rough", "a rough ray", &rough)]) {
+    for (k, (id, name, ray)) in
+        (1..).zip([("smooth", "the seed ray", &smooth), ("rough", "a rough ray", &rough)])
+    {
         section.charts.extend(charts(run, (id, name, ray), k)?);
     }
     Ok(section)
@@ -54,18 +56,35 @@ fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, AnyEstimator)>
     let depth = ray.majorant * ray.profile.length();
     let teeth = TeethSpec::Rule { pivot: Some(depth) };
     let marching = |comb| {
-        beyond(BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette: RouletteSpec::Stop(0.9), segments: 1 })
+        beyond(BeyondSpec::UnbiasedRayMarching {
+            teeth,
+            comb,
+            roulette: RouletteSpec::Stop(0.9),
+            segments: 1,
+        })
     };
     let facts = facts_of(ray, seed);
     let half = |teeth: u32| (teeth / 2).max(1);
     let rule = fairflight_transmittance::teeth_for(depth);
     Ok(vec![
-        ("hybrid", AnyEstimator::Beyond(Beyond::hybrid(&facts.experience, ray.profile.length(), ray.majorant, Hybrid::USUAL_BUDGET))),
+        (
+            "hybrid",
+            AnyEstimator::Beyond(Beyond::hybrid(
+                &facts.experience,
+                ray.profile.length(),
+                ray.majorant,
+                Hybrid::USUAL_BUDGET,
+            )),
+        ),
         ("unbiased ray marching, matched", marching(CombKind::EndpointMatched)?),
         ("unbiased ray marching", marching(CombKind::Uniform)?),
         (
             "telescoping",
-            beyond(BeyondSpec::Telescoping { teeth: depth.round() as u32, level_ratio: 0.65, endpoint_matching: false })?,
+            beyond(BeyondSpec::Telescoping {
+                teeth: depth.round() as u32,
+                level_ratio: 0.65,
+                endpoint_matching: false,
+            })?,
         ),
         (
             "jittered ratio, 0.25",
@@ -81,7 +100,10 @@ fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, AnyEstimator)>
         ("track length", build(EstimatorSpec::Woodcock { majorant: ray.majorant })?),
         ("jackknife (biased)", beyond(BeyondSpec::Jackknife { teeth: half(rule) })?),
         ("naive (biased)", beyond(BeyondSpec::Naive { teeth: half(rule) })?),
-        ("progressive majorant (biased)", beyond(BeyondSpec::ProgressiveMajorant { start: GUESS * ray.majorant })?),
+        (
+            "progressive majorant (biased)",
+            beyond(BeyondSpec::ProgressiveMajorant { start: GUESS * ray.majorant })?,
+        ),
     ])
 }
 
@@ -97,7 +119,8 @@ fn charts(run: &Run<'_>, (id, name, ray): (&str, &str, &TestRay), k: u64) -> Res
                     // An estimator of its own: one that learns begins anew.
                     let seed = derive_seed(derive_seed(derive_seed(seed, e), i), replica);
                     let (_, estimator) = players(ray, seed)?.swap_remove(e as usize);
-                    let measured = draw(&ray.profile, &estimator, &ray.truth, (samples, seed, samples), &|_| ())?;
+                    let measured =
+                        draw(&ray.profile, &estimator, &ray.truth, (samples, seed, samples), &|_| ())?;
                     let mean = measured.moments.mean().unwrap_or(f64::NAN);
                     let error = (mean * ray.truth.optical_thickness.exp() - 1.0).powi(2);
                     Ok([error, measured.lookups_per_sample * samples as f64, measured.seconds])

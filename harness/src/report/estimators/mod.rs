@@ -18,7 +18,14 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
     let clock = Instant::now();
     let run = Run::new(options, environment, 1);
     let arenas = sets::arenas(&run)?;
-    run.expect(seed_ray::steps() + cells::steps() + convergence::steps() + flights::steps() + plane::steps(&run) + arenas.iter().map(rays::steps).sum::<u64>());
+    run.expect(
+        seed_ray::steps()
+            + cells::steps()
+            + convergence::steps()
+            + flights::steps()
+            + plane::steps(&run)
+            + arenas.iter().map(rays::steps).sum::<u64>(),
+    );
     let seed = seed_ray::study(&run)?;
     let plane = plane::study(&run)?;
     let mut standings = Vec::new();
