@@ -21,6 +21,8 @@ pub(crate) enum Command {
     Report(ReportArguments),
     /// Measure one experiment, or a sweep of them, given as JSON; the result goes to standard output
     Estimate(EstimateArguments),
+    /// Say which estimator of transmittance to use in a medium; a table on standard error, JSON on standard output
+    Advise(AdviseArguments),
     /// Render a scene, given as JSON, into images and statistics
     Render(RenderArguments),
     /// Check all laws over all estimators, media and hard cases; exit code 1 if one fails
@@ -86,6 +88,35 @@ pub(crate) struct EstimateArguments {
     /// Instead of the spec's seed
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `advise`.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct AdviseArguments {
+    /// A medium as in an experiment, or a scene, whose camera's rays are then used; - reads standard input
+    #[arg(value_name = "MEDIUM.json", required_unless_present = "vdb", conflicts_with = "vdb")]
+    pub medium: Option<PathBuf>,
+    /// Instead, an OpenVDB fog volume
+    #[arg(long, value_name = "FILE")]
+    pub vdb: Option<PathBuf>,
+    /// The grid of that file [default: its first float grid]
+    #[arg(long, value_name = "NAME", requires = "vdb")]
+    pub grid: Option<String>,
+    /// A factor in front of its values
+    #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
+    pub scale: f64,
+    /// An upper bound of the extinction [default: what the medium declares]
+    #[arg(long, value_name = "NUMBER", value_parser = positive)]
+    pub majorant: Option<f64>,
+    /// Rays that probe the medium
+    #[arg(long, value_name = "NUMBER", default_value_t = 60, value_parser = clap::value_parser!(u16).range(2..))]
+    pub rays: u16,
+    /// The seed of all variates
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,

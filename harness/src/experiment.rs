@@ -3,7 +3,8 @@
 use crate::Failure;
 use crate::measure::{Draws, Measurement, measure};
 use crate::plan::{
-    AnyEstimator, Estimator, EstimatorJob, Field, FieldJob, KnownField, Lawful, Plan, ThicknessMethod,
+    AnyEstimator, AnyProfile, Estimator, EstimatorJob, Field, FieldJob, KnownField, Lawful, Plan,
+    ThicknessMethod,
 };
 use crate::reference::{Prediction, Truth, explain, predict};
 use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, ReferenceResult};
@@ -36,13 +37,32 @@ pub fn measure_plan(
     truth: &Truth,
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    plan.profile.with(Draw { plan, truth, advance })
+    let &Plan { ref profile, ref estimator, samples, seed, counted, .. } = plan;
+    draw(profile, estimator, truth, (samples, seed, counted), advance)
+}
+
+/// Draws `samples` estimates of the transmittance of a profile from `seed`; of `counted` of them the look-ups are counted.
+///
+/// # Errors
+/// If a look-up is not lawful, or an estimate not finite.
+pub fn draw(
+    profile: &AnyProfile,
+    estimator: &AnyEstimator,
+    truth: &Truth,
+    (samples, seed, counted): (u64, u64, u64),
+    advance: &(dyn Fn(u64) + Sync),
+) -> Result<Measurement, Failure> {
+    let sequential = matches!(estimator, AnyEstimator::Beyond(beyond) if beyond.is_sequential());
+    let draws = Draws { samples, seed, counted, sequential };
+    profile.with(Draw { profile, estimator, truth, draws, advance })
 }
 
 #[derive(Clone, Copy)]
 struct Draw<'a> {
-    plan: &'a Plan,
+    profile: &'a AnyProfile,
+    estimator: &'a AnyEstimator,
     truth: &'a Truth,
+    draws: Draws,
     advance: &'a (dyn Fn(u64) + Sync),
 }
 
@@ -52,22 +72,16 @@ impl FieldJob for Draw<'_> {
     where
         for<'a> &'a F: Field,
     {
-        self.plan.estimator.with(field, self)?
+        self.estimator.with(field, self)?
     }
 }
 
 impl EstimatorJob for Draw<'_> {
     type Output = Result<Measurement, Failure>;
     fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
-        let &Plan { ref profile, estimator: ref any, samples, seed, counted, .. } = self.plan;
         let upper_bound = self.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
-        let place = |violation: Violation| explain(profile, any, self.truth, violation);
-        measure(
-            Lawful { field, estimator, upper_bound },
-            Draws { samples, seed, counted },
-            &place,
-            self.advance,
-        )
+        let place = |violation: Violation| explain(self.profile, self.estimator, self.truth, violation);
+        measure(Lawful { field, estimator, upper_bound }, self.draws, &place, self.advance)
     }
 }
 
@@ -112,7 +126,7 @@ pub fn analyse(
     measurement: &Measurement,
     provenance: Provenance,
 ) -> ExperimentResult {
-    let Measurement { moments, lookups_per_sample, seconds } = *measurement;
+    let Measurement { moments, lookups_per_sample, seconds, .. } = *measurement;
     let n = moments.count() as f64;
     let transmittance = truth.transmittance();
     let theory = &prediction.theory;
@@ -148,7 +162,7 @@ pub fn analyse(
             variance: known.then(|| log_variance.exp()),
             log_variance: Some(log_variance).filter(|log| known && *log != f64::NEG_INFINITY),
             error: truth.error(),
-            lookups_per_sample: Some(theory.lookups + preparation),
+            lookups_per_sample: Some(theory.lookups + preparation).filter(|lookups| !lookups.is_nan()),
             method: method(plan, truth, prediction, known),
         },
         cost: Cost { samples: moments.count(), lookups_per_sample: lookups, seconds },
@@ -186,13 +200,14 @@ fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> S
         ThicknessMethod::GaussPerCell => "two-point Gauss-Legendre per voxel cell (exact)",
         ThicknessMethod::Quadrature => "adaptive Gauss-Kronrod quadrature",
     };
-    let variance = match plan.estimator {
+    let variance = match &plan.estimator {
         AnyEstimator::Woodcock { .. } => "variance: closed form T(1 - T)",
         AnyEstimator::DoubleParticle(_) | AnyEstimator::SingleParticle(_) => {
             "variance: szirmay-kalos-2017 eq. 16, integrated over the ray"
         }
         AnyEstimator::LineIntegral { .. } => "variance: quadrature over the shared shift",
         AnyEstimator::RayMarching(_) => "variance: quadrature over the offset (a biased baseline)",
+        AnyEstimator::Beyond(beyond) => &beyond.variance_method(),
     };
     let errors =
         if known { "standard errors: closed-form moments" } else { "standard errors: sample moments" };

@@ -6,6 +6,7 @@
 //!
 //! [`run`] is the whole program: arguments, streams, exit code.
 
+mod advise;
 mod cli;
 mod environment;
 mod estimate;
@@ -14,6 +15,7 @@ mod list;
 mod render;
 mod verify;
 
+pub mod comparison;
 pub mod experiment;
 pub mod image;
 pub mod interrupt;
@@ -50,6 +52,7 @@ pub fn run(
     let environment = Environment::new(&arguments, terminal);
     let outcome = match cli.command {
         Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
+        Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
         Some(Command::List) => list::run(stdout),

@@ -18,6 +18,8 @@ pub struct Measurement {
     pub lookups_per_sample: f64,
     /// CPU seconds over all threads of the loop that drew the estimates, without counting their look-ups.
     pub seconds: f64,
+    /// The number of estimates below zero.
+    pub negative: u64,
 }
 
 /// Look-ups are counted in a second run over the same variates, since the run that is timed does not count: of at most
@@ -33,6 +35,7 @@ struct Batch {
     seconds: f64,
     lookups: u64,
     counted: u64,
+    negative: u64,
 }
 
 /// How much is drawn, and from which seed.
@@ -44,6 +47,8 @@ pub struct Draws {
     pub seed: u64,
     /// Of how many, in whole batches, the look-ups are counted.
     pub counted: u64,
+    /// Whether each estimate may depend on those before it: then there is one thread.
+    pub sequential: bool,
 }
 
 /// Draws estimates. `advance` is told how many samples were added.
@@ -57,7 +62,7 @@ pub fn measure<G: Field, E: Estimator<G>>(
     place: &(dyn Fn(Violation) -> Failure + Sync),
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    in_batches(draws.samples, advance, &|index, values| one_batch(lawful, draws, index, values, place))
+    in_batches(draws, advance, &|index, values| one_batch(lawful, draws, index, values, place))
 }
 
 /// What draws a batch by its number, into a buffer of estimates.
@@ -66,25 +71,27 @@ type DrawBatch<'a> = dyn Fn(u64, &mut Vec<f64>) -> Result<Batch, Failure> + Sync
 /// Draws all batches on the threads of the current pool, and puts them together in their order. One copy for all estimators: a call
 /// per batch costs nothing.
 fn in_batches(
-    samples: u64,
+    Draws { samples, sequential, .. }: Draws,
     advance: &(dyn Fn(u64) + Sync),
     draw: &DrawBatch<'_>,
 ) -> Result<Measurement, Failure> {
     let batches = batch_count(samples);
     let mut moments = Moments::new();
-    let (mut seconds, mut lookups, mut counted) = (0.0, 0, 0);
+    let (mut seconds, mut lookups, mut counted, mut negative) = (0.0, 0, 0, 0);
     for start in (0..batches).step_by(CHUNK as usize) {
-        let chunk: Vec<Result<Batch, Failure>> = (start..batches.min(start + CHUNK))
-            .into_par_iter()
-            .map_init(
-                || Vec::with_capacity(BATCH as usize),
-                |values, index| {
-                    let batch = draw(index, values)?;
-                    advance(batch_size(samples, index));
-                    Ok(batch)
-                },
-            )
-            .collect();
+        let indices = start..batches.min(start + CHUNK);
+        let buffer = || Vec::with_capacity(BATCH as usize);
+        let one = |values: &mut Vec<f64>, index| {
+            let batch = draw(index, values)?;
+            advance(batch_size(samples, index));
+            Ok(batch)
+        };
+        let chunk: Vec<Result<Batch, Failure>> = if sequential {
+            let mut values = buffer();
+            indices.map(|index| one(&mut values, index)).collect()
+        } else {
+            indices.into_par_iter().map_init(buffer, one).collect()
+        };
         // In the order of the batches: the first failure and the last bit of each moment are the same on every run.
         for batch in chunk {
             let batch = batch?;
@@ -92,14 +99,15 @@ fn in_batches(
             seconds += batch.seconds;
             lookups += batch.lookups;
             counted += batch.counted;
+            negative += batch.negative;
         }
     }
-    Ok(Measurement { moments, lookups_per_sample: lookups as f64 / counted as f64, seconds })
+    Ok(Measurement { moments, lookups_per_sample: lookups as f64 / counted as f64, seconds, negative })
 }
 
 fn one_batch<G: Field, E: Estimator<G>>(
     lawful: Lawful<G, E>,
-    Draws { samples, seed, counted: most_counted }: Draws,
+    Draws { samples, seed, counted: most_counted, .. }: Draws,
     index: u64,
     values: &mut Vec<f64>,
     place: &(dyn Fn(Violation) -> Failure + Sync),
@@ -113,6 +121,7 @@ fn one_batch<G: Field, E: Estimator<G>>(
         return Err(place(violation));
     }
     let moments = batch_moments(seed, index, values).map_err(Failure::refused)?;
+    let negative = values.iter().filter(|value| **value < 0.0).count() as u64;
     let (mut lookups, mut counted) = (0, 0);
     if index * BATCH < most_counted {
         let counting = Counted::new(watched);
@@ -120,5 +129,5 @@ fn one_batch<G: Field, E: Estimator<G>>(
         lookups = counting.lookups();
         counted = values.len() as u64;
     }
-    Ok(Batch { moments, seconds, lookups, counted })
+    Ok(Batch { moments, seconds, lookups, counted, negative })
 }

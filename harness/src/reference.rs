@@ -133,6 +133,12 @@ pub fn explain(
         AnyEstimator::SingleParticle(tracking) => {
             explain_ratio(&place, tracking.ratio_at(s, sigma_t), sigma_t)
         }
+        AnyEstimator::Beyond(beyond) => match beyond.claimed_majorant() {
+            Some(majorant) if sigma_t > majorant => {
+                format!("estimator.majorant: {majorant} is none, since sigma_t = {sigma_t} at {place}")
+            }
+            _ => format!("estimator: {} is not defined for sigma_t = {sigma_t} at {place}", beyond.kind()),
+        },
         AnyEstimator::RayMarching(_) => format!("estimator: not defined for sigma_t = {sigma_t} at {place}"),
     })
 }

@@ -14,7 +14,7 @@ fn every_hard_case_passes() {
 fn the_rows_of_what_is_built_are_all_there() {
     let mut rows: Vec<u32> = hard_cases().iter().map(|case| case.number).collect();
     rows.dedup();
-    assert_eq!(rows, [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 21]);
+    assert_eq!(rows, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 21, 22]);
 }
 
 #[test]

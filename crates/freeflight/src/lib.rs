@@ -10,7 +10,9 @@
 //! | [`Newton`] | szirmay-kalos-2017 eq. 4 | an optical thickness in closed form | 1 |
 //! | [`Regular`] | szirmay-kalos-2017 eq. 4, cell by cell | cells with a cubic in each | 1 |
 //! | [`Woodcock`] | raab-2008 algorithm 1 | a majorant, constant or in cells | 1 |
+//! | [`JitteredFlight`] | ours, beside jittered ratio tracking | a majorant | 1 |
 //! | [`Tracking`] | szirmay-kalos-2017 eq. 9 and 12 | nothing: any sampling extinction, either sign | 1 where σ_samp ≥ σ_t ≥ 0 |
+//! | [`spectral`] | kutz-2017, wilkie-2014, raab-2008 section 3.2 | look-ups of N wavelengths | one for each wavelength |
 //!
 //! ```
 //! use fairflight_freeflight::{Flight, FreeFlight, Woodcock};
@@ -30,15 +32,18 @@
 
 mod flight;
 mod inversion;
+mod jittered;
 mod newton;
 mod regular;
 mod root;
+pub mod spectral;
 mod theory;
 mod tracking;
 mod woodcock;
 
 pub use flight::{Flight, FreeFlight};
 pub use inversion::Inversion;
+pub use jittered::{EpsilonError, JitteredFlight};
 pub use newton::Newton;
 pub use regular::Regular;
 pub use theory::{ClosedForm, HIGHEST_MOMENT};

@@ -76,31 +76,63 @@ pub(crate) fn lookups_of_a_walk<F: Extinction>(
     tolerance: Tolerance,
     rates: &dyn Fn(f64, f64) -> [f64; 2],
 ) -> [f64; HIGHEST_MOMENT] {
-    let ended = quadrature.integrate_nested(tolerance, rates, |s, sigma_t, [ended, passed]| {
-        let [ending, _] = rates(s, sigma_t);
-        let (_, one_more) = poisson_moments(passed);
-        one_more.map(|moment| ending * (-ended).exp() * moment)
-    });
-    let [all_ended, all_passed] = quadrature.integrate(tolerance, rates).value;
+    lookups_of_a_race(quadrature, tolerance, &|s, sigma_t| {
+        let [ending, passing] = rates(s, sigma_t);
+        [0.0, ending, passing]
+    })
+}
+
+/// As [`lookups_of_a_walk`], with a further Poisson process whose first point ends the flight without a look-up; its rate is
+/// the first of the three.
+pub(crate) fn lookups_of_a_race<F: Extinction>(
+    quadrature: &mut RayQuadrature<F>,
+    tolerance: Tolerance,
+    rates: &dyn Fn(f64, f64) -> [f64; 3],
+) -> [f64; HIGHEST_MOMENT] {
+    let ending_and_passing = |s: f64, sigma_t: f64| {
+        let [unseen, ending, passing] = rates(s, sigma_t);
+        [unseen + ending, passing]
+    };
+    let ended: Integral<HIGHEST_MOMENT> =
+        quadrature.integrate_nested(tolerance, ending_and_passing, |s, sigma_t, [ended, passed]| {
+            let [unseen, ending, _] = rates(s, sigma_t);
+            let (as_passed, one_more) = poisson_moments(passed);
+            let under_way = (-ended).exp();
+            std::array::from_fn(|i| ending * under_way * one_more[i] + unseen * under_way * as_passed[i])
+        });
+    let [all_ended, all_passed] = quadrature.integrate(tolerance, ending_and_passing).value;
     let (escaped, _) = poisson_moments(all_passed);
     std::array::from_fn(|i| ended.value[i] + (-all_ended).exp() * escaped[i])
 }
 
 /// E\[P^k\] and E\[(1 + P)^k\], k = 1 … 8, of a Poisson variate P of this mean: the second by the binomial theorem, and
 /// E\[P^(k+1)\] = mean · E\[(1 + P)^k\].
-fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHEST_MOMENT]) {
-    let mut raw = [1.0; HIGHEST_MOMENT + 2];
-    raw[1] = mean;
-    let mut one_more = [0.0; HIGHEST_MOMENT];
+pub(crate) fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHEST_MOMENT]) {
+    let mut raw = [0.0; HIGHEST_MOMENT];
+    let mut next = [0.0; HIGHEST_MOMENT];
+    raw[0] = mean;
     for k in 1..=HIGHEST_MOMENT {
-        let mut binomial = 1.0;
-        for (j, moment) in raw[..=k].iter().enumerate() {
-            one_more[k - 1] += binomial * moment;
-            binomial *= (k - j) as f64 / (j + 1) as f64;
+        next[k - 1] = one_more_to(k, &raw);
+        if k < HIGHEST_MOMENT {
+            raw[k] = mean * next[k - 1];
         }
-        raw[k + 1] = mean * one_more[k - 1];
     }
-    (std::array::from_fn(|i| raw[i + 1]), one_more)
+    (raw, next)
+}
+
+/// E\[(1 + X)^k\], k = 1 … 8, from E\[X^k\].
+pub(crate) fn one_more(raw: &[f64; HIGHEST_MOMENT]) -> [f64; HIGHEST_MOMENT] {
+    std::array::from_fn(|i| one_more_to(i + 1, raw))
+}
+
+/// E\[(1 + X)^k\], by the binomial theorem.
+fn one_more_to(k: usize, raw: &[f64; HIGHEST_MOMENT]) -> f64 {
+    let (mut sum, mut binomial) = (1.0, 1.0);
+    for j in 1..=k {
+        binomial *= (k - j + 1) as f64 / j as f64;
+        sum += binomial * raw[j - 1];
+    }
+    sum
 }
 
 /// x, x², …, x⁸.

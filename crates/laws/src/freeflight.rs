@@ -39,6 +39,8 @@ const MOST_DISTANCES: usize = 1 << 18;
 pub enum Weights {
     /// All are 1: distances have the density σ_t T.
     One,
+    /// They lie between 0 and this number.
+    UpTo(u32),
     /// They vary.
     Any,
 }
@@ -97,6 +99,11 @@ impl FlightExpectation {
         }
     }
 
+    /// Without a word on look-ups.
+    pub(crate) fn uncounted(&self) -> Self {
+        Self { lookups: None, ..self.clone() }
+    }
+
     /// P(distance ≤ s | collided), for an unweighted sampler.
     fn distribution(&self, s: f64) -> f64 {
         let up_to = |s: f64| -(-self.thickness.at(s)[0]).exp_m1();
@@ -122,6 +129,7 @@ fn scores(weights: Weights, is_indicator: bool) -> Scores {
     match (weights, is_indicator) {
         (Weights::One, true) => Scores::TwoValued { high: 1.0 },
         (Weights::One, false) => Scores::Bounded { minimum: 0.0, maximum: 1.0 },
+        (Weights::UpTo(most), _) => Scores::Bounded { minimum: 0.0, maximum: f64::from(most) },
         (Weights::Any, _) => Scores::Unbounded,
     }
 }
@@ -173,7 +181,7 @@ where
 {
     let observed = Counted::new(Watched::new(field, AdmittedFlight { field, sampler }));
     let lookups = || observed.lookups();
-    let measured = measure(&observed, sampler, expected, run, lookups)?;
+    let measured = measure(|source| sampler.sample(&observed, source), expected, run, lookups)?;
     match observed.field().violation() {
         Some(violation) => Err(FlightRefusal::Unlawful(violation)),
         None => Ok(measured.judged(expected, run)),
@@ -194,29 +202,25 @@ where
     G: Extinction,
     E: FreeFlight<G>,
 {
-    let uncounted = FlightExpectation { lookups: None, ..expected.clone() };
-    Ok(measure(&field, sampler, &uncounted, run, || 0)?.judged(&uncounted, run))
+    let uncounted = expected.uncounted();
+    Ok(measure(|source| sampler.sample(&field, source), &uncounted, run, || 0)?.judged(&uncounted, run))
 }
 
 /// What was measured of a run of flights.
-struct Measured {
+pub(crate) struct Measured {
     collided: [Moments; TEST_FUNCTIONS.len()],
     escaped: Moments,
     lookups: Moments,
     distances: Vec<f64>,
 }
 
-fn measure<F, E>(
-    field: &F,
-    sampler: E,
+/// Flights of one sampler, whatever it looks up; `lookups` counts from any start.
+pub(crate) fn measure(
+    mut sample: impl FnMut(&mut Seeded) -> Flight,
     expected: &FlightExpectation,
     run: Run,
     lookups: impl Fn() -> u64,
-) -> Result<Measured, FlightRefusal>
-where
-    F: Extinction,
-    E: FreeFlight<F>,
-{
+) -> Result<Measured, FlightRefusal> {
     let mut measured = Measured {
         collided: std::array::from_fn(|_| Moments::new()),
         escaped: Moments::new(),
@@ -229,7 +233,7 @@ where
         let mut source = Seeded::for_batch(run.seed, batch);
         for _ in 0..batch_size(run.samples, batch) {
             let before = lookups();
-            let flight = sampler.sample(field, &mut source);
+            let flight = sample(&mut source);
             let (distance, escaped) = match flight {
                 Flight::Collided { distance, .. } => (distance, 0.0),
                 Flight::Escaped { weight } => (f64::NAN, weight),
@@ -258,7 +262,7 @@ where
 }
 
 impl Measured {
-    fn judged(mut self, expected: &FlightExpectation, run: Run) -> FlightEvidence {
+    pub(crate) fn judged(mut self, expected: &FlightExpectation, run: Run) -> FlightEvidence {
         // An expected number of look-ups of 0 is a fact about each flight, not about their mean.
         let none = expected.lookups.is_some_and(|reference| reference.mean == 0.0);
         let counts = expected.lookups.filter(|_| !none);

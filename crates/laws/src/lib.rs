@@ -2,6 +2,7 @@
 //!
 //! * [`transmittance::check`], [`collision::check`], [`freeflight::check`], [`phase::check`]: one law each, for any
 //!   implementer.
+//! * [`spectral`]: the law of free flight for each of several wavelengths.
 //! * [`paths`]: radiance against quadrature, slabs and closed forms.
 //! * [`vpl`]: virtual point lights, what bounding them takes away, and light among surfaces.
 //! * [`scores`]: which values an estimate can take, derived from what is known of a profile.
@@ -28,6 +29,7 @@ pub mod lookups;
 pub mod paths;
 pub mod phase;
 pub mod scores;
+pub mod spectral;
 pub mod transmittance;
 pub mod vpl;
 

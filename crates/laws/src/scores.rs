@@ -162,6 +162,13 @@ pub fn line_integral(majorant_thickness: f64, unit: Unit) -> Scores {
     Scores::Bounded { minimum: unit.exp(-majorant_thickness), maximum: unit.exp(0.0) }
 }
 
+/// The scores of [`fairflight_transmittance::JitteredRatio`] (a thickness of 0), of its sibling in cells, and of
+/// [`fairflight_transmittance::ResidualCells`] with a rate of at least 1: factors in \[0, 1\] times the transmittance of the minorants.
+#[must_use]
+pub fn in_cells(minorant_thickness: f64, unit: Unit) -> Scores {
+    Scores::Bounded { minimum: 0.0, maximum: unit.exp(-minorant_thickness) }
+}
+
 /// The scores of [`fairflight_transmittance::RayMarching`]: the exponential of a mean of σ_t times the length.
 #[must_use]
 pub fn ray_marching(sigma_t: Interval, length: f64, unit: Unit) -> Scores {

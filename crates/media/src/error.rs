@@ -31,6 +31,16 @@ pub enum FieldError {
         /// Their number.
         found: usize,
     },
+    /// A list would have too many entries.
+    #[error("{what} may have {most} entries, asked for {found}")]
+    TooMany {
+        /// The parameter.
+        what: &'static str,
+        /// The greatest number of entries.
+        most: usize,
+        /// Their number, or the greatest that can be counted.
+        found: usize,
+    },
     /// Edges or positions do not increase.
     #[error("{what} must increase strictly, but {what}[{index}] = {found} follows {previous}")]
     NotIncreasing {
@@ -51,6 +61,16 @@ pub enum FieldError {
         /// The first entry.
         found: f64,
     },
+    /// Cells do not end where the profile does.
+    #[error("{what} must end at {length}, the end of the profile, found {found}")]
+    NotAtEnd {
+        /// The parameter.
+        what: &'static str,
+        /// The length of the profile.
+        length: f64,
+        /// Where the last one ends.
+        found: f64,
+    },
     /// Two lists do not fit together.
     #[error("{what} needs {expected} entries, found {found}")]
     LengthMismatch {
@@ -60,6 +80,16 @@ pub enum FieldError {
         expected: usize,
         /// Their number.
         found: usize,
+    },
+    /// Profiles that belong together differ in their length.
+    #[error("{what} must have one length, found {first} and {found}")]
+    UnequalLengths {
+        /// The parameter.
+        what: &'static str,
+        /// The length of the first \[length\].
+        first: f64,
+        /// Another length \[length\].
+        found: f64,
     },
     /// A direction of length zero, or a map that flattens space.
     #[error("{what} must not be degenerate")]

@@ -77,6 +77,13 @@ impl OpticalThickness for Vacuum {
     }
 }
 
+impl InvertOpticalThickness for Vacuum {
+    #[inline]
+    fn invert(&self, _from: f64, _depth: f64) -> Option<f64> {
+        None
+    }
+}
+
 impl Breakpoints for Vacuum {
     fn breakpoints(&self) -> Vec<f64> {
         Vec::new()

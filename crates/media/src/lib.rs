@@ -11,13 +11,20 @@
 //! | [`OpticalThickness`] | ∫ σ_t ds in closed form |
 //! | [`InvertOpticalThickness`] | the distance at which an optical thickness is reached, in closed form |
 //! | [`Cells`] | where one cubic ends and the next begins |
+//! | [`BoundedInCells`] | both bounds in each of many cells |
+//! | [`IntervalBounds`] | both bounds between any two distances, hence in cells |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
+//! | [`SpectralExtinction`] | σ_t(s) of N wavelengths by one look-up; [`SpectralMajorant`] and others as above |
+//!
+//! A medium with [`BoxBounds`] fills a [`BoundGrid`], which gives a ray its cells.
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
 //! Quadrature of a profile ([`RayQuadrature`]) is the reference that estimators are judged against; it is not an
 //! estimator.
 
 mod analytic_cosine;
+mod bound_cells;
+mod bound_grid;
 mod bounded;
 mod bounds;
 mod cells;
@@ -29,8 +36,10 @@ mod extinction;
 mod gradient_noise;
 mod homogeneous;
 mod inside;
+mod interval_bounds;
 mod lattice_planes;
 mod medium;
+mod medium_bounds;
 mod observed;
 mod perlin;
 pub mod phase;
@@ -38,10 +47,13 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod spectral;
 mod voxels;
 mod watched;
 
 pub use analytic_cosine::AnalyticCosine;
+pub use bound_cells::{BoundCell, BoundedInCells, InCells};
+pub use bound_grid::BoundGrid;
 pub use bounded::Bounded;
 pub use bounds::{Bounds, Clip};
 pub use cells::{Cells, LineCells};
@@ -53,7 +65,9 @@ pub use extinction::{
     Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
 };
 pub use homogeneous::Homogeneous;
+pub use interval_bounds::IntervalBounds;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
+pub use medium_bounds::{BoxBounds, Boxes};
 pub use observed::Observed;
 pub use perlin::{Perlin, PerlinParameters};
 pub use phase::{PhaseFunction, Scattered};
@@ -61,5 +75,9 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use spectral::{
+    Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
+    Wavelength,
+};
 pub use voxels::{Lattice, Voxels};
 pub use watched::{Counted, Domain, Violation, Watched};

@@ -46,6 +46,13 @@ impl PiecewiseConstant {
         self.inner_edges().partition_point(|&edge| edge <= s)
     }
 
+    /// The values met on `from ≤ s < to`.
+    pub(crate) fn values_between(&self, from: f64, to: f64) -> &[f64] {
+        let first = self.cell(from);
+        let last = self.inner_edges().partition_point(|&edge| edge < to);
+        &self.sigma_t[first..=last.max(first)]
+    }
+
     /// ∫ σ_t from the start of the profile to `s`.
     #[inline]
     fn depth(&self, s: f64) -> f64 {

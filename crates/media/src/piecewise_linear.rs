@@ -40,6 +40,13 @@ impl PiecewiseLinear {
         &self.positions[1..self.positions.len() - 1]
     }
 
+    /// The values of the nodes on `from < s < to`.
+    pub(crate) fn nodes_between(&self, from: f64, to: f64) -> &[f64] {
+        let first = self.positions.partition_point(|&node| node <= from);
+        let end = self.positions.partition_point(|&node| node < to);
+        &self.sigma_t[first..end.max(first)]
+    }
+
     #[inline]
     fn piece(&self, s: f64) -> usize {
         self.inner_nodes().partition_point(|&node| node <= s)

@@ -75,6 +75,15 @@ impl<L: Lattice> Voxels<L> {
         (planes as u64).saturating_add(1)
     }
 
+    /// scale · (low, high), in order.
+    pub(crate) fn scaled(&self, (low, high): (f64, f64)) -> (f64, f64) {
+        if self.scale < 0.0 {
+            (self.scale * high, self.scale * low)
+        } else {
+            (self.scale * low, self.scale * high)
+        }
+    }
+
     /// scale · (the lattice's value), for a bound: a negative scale exchanges the two.
     fn bound(&self, positive: f64, negative: f64) -> Option<f64> {
         let bound = self.scale * if self.scale < 0.0 { negative } else { positive };
@@ -191,14 +200,14 @@ impl Sum {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use glam::{DMat3, dvec3};
 
-    const SIZE: [i64; 3] = [7, 5, 6];
+    pub(crate) const SIZE: [i64; 3] = [7, 5, 6];
 
     /// Random values in [0.5, 1.5] within a background of 0.25.
-    struct Dense(Vec<f64>);
+    pub(crate) struct Dense(Vec<f64>);
 
     fn random() -> impl FnMut() -> f64 {
         let mut state = 7u64;
@@ -209,7 +218,7 @@ mod tests {
     }
 
     impl Dense {
-        fn new() -> Self {
+        pub(crate) fn new() -> Self {
             let mut next = random();
             Self((0..SIZE.iter().product()).map(|_| 0.5 + next()).collect())
         }

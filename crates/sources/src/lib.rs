@@ -6,22 +6,30 @@
 //! * [`Seeded`]: xoshiro256++ (Blackman & Vigna 2021), one stream per batch.
 //! * [`Scripted`]: a fixed list that panics when it is exhausted: exact algebra and draw counts in tests.
 //! * [`Counting`]: how many variates a sampler draws.
+//! * [`points`]: the points of [`Sobol`], [`Halton`], [`Hammersley`] and [`LatinHypercube`], randomised, each a source of its own.
 
 mod counting;
+pub mod points;
 mod scripted;
 mod seeded;
 
 pub use counting::Counting;
+pub use points::{Halton, Hammersley, LatinHypercube, PointSet, PointSetError, PointSource, Sobol};
 pub use scripted::Scripted;
 pub use seeded::{Seeded, derive_seed};
 
 /// The largest variate that a source returns: 1 − 2^-53.
 pub const LARGEST_VARIATE: f64 = 1.0 - f64::EPSILON / 2.0;
 
-/// A sequence of independent variates, uniform on `[0, 1)`.
+/// A sequence of variates, uniform on `[0, 1)` and independent within one estimate.
 ///
 /// **Law.** Each variate is uniform on the lattice `k · 2^-53`, `k = 0 … 2^53 − 1`: 0 occurs, 1 never does, and `1 − u`
-/// is exact in double precision.
+/// is exact in double precision. Those that one estimate draws are independent of each other: an estimate is unbiased
+/// whatever source it draws from.
+///
+/// Two estimates are independent where their sources are: one stream of a generator that both draw from in turn, or streams
+/// of different seeds. The sources of one [`PointSet`] are not, on purpose: their estimates may be averaged, and the
+/// variance of the mean is measured over replicas ([`points`]).
 pub trait UniformSource {
     /// The next variate in `[0, 1)`.
     fn next_uniform(&mut self) -> f64;

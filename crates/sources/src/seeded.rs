@@ -7,7 +7,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// xoshiro256++ from a 64-bit seed: the default source.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Seeded(Xoshiro256PlusPlus);
+pub struct Seeded(pub(crate) Xoshiro256PlusPlus);
 
 impl Seeded {
     /// The stream of `seed`; the state is filled by SplitMix64, as the generator's authors advise.

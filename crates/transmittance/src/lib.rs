@@ -9,6 +9,9 @@
 //! | [`Woodcock`] | raab-2008 algorithm 1 | a majorant |
 //! | [`Tracking`] with the double particle model | szirmay-kalos-2017 4.2 | nothing (ratio and residual ratio tracking are special cases) |
 //! | [`Tracking`] with the single particle model | szirmay-kalos-2017 eq. 9 | the domain of its version |
+//! | [`ResidualCells`] | novak-2014, in cells | bounds in cells |
+//! | [`JitteredRatio`] | ours | a majorant; estimates in \[0, 1\] |
+//! | [`JitteredRatioInCells`] | ours | bounds in cells; estimates in \[0, 1\] where σ_t ≥ 0 |
 //! | [`LineIntegral`] | raab-2008 algorithm 2 | a majorant |
 //! | [`NextFlight`], after delta or ratio tracking | cramer-1978 | a majorant; with ratio tracking, any rate |
 //! | [`Unidirectional`], [`Bidirectional`]: ratio tracking and next flight by multiple importance sampling | georgiev-2019 | any rate |
@@ -17,7 +20,10 @@
 //! | [`AdaptiveRatio`] | misso-2023 | any rate; a majorant keeps it between 0 and 1 |
 //! | [`ProgressiveMajorant`] | misso-2023 | nothing; biased, consistent |
 //! | [`Regular`] | the integral itself | a closed-form optical thickness |
+//! | [`UnbiasedRayMarching`] | kettunen-2021 | nothing; any [`Comb`], any [`Roulette`], any number of segments |
+//! | [`Telescoping`] | misso-2022 | nothing |
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
+//! | [`Jackknife`] | peters-2025 | a biased baseline |
 //!
 //! ```
 //! use fairflight_collision::{Albedo, DoubleParticle};
@@ -37,9 +43,14 @@
 
 mod adaptive_ratio;
 mod bidirectional;
+mod combs;
 mod estimator;
 mod explorers;
+mod factors;
 mod generalised_poisson;
+mod hybrid;
+mod jittered_law;
+mod jittered_ratio;
 mod line_integral;
 mod next_flight;
 mod p_series;
@@ -47,6 +58,7 @@ mod product_law;
 mod progressive_majorant;
 mod ray_marching;
 mod regular;
+mod residual_cells;
 mod signed_product;
 #[cfg(test)]
 mod test_support;
@@ -54,11 +66,21 @@ mod theory;
 mod tracking;
 mod woodcock;
 
+#[cfg(test)]
+mod seed_ray_tests;
 pub use adaptive_ratio::{AdaptiveRatio, FloorError};
 pub use bidirectional::{Bidirectional, Unidirectional};
+pub use combs::{
+    Comb, CombCumulants, CombLookups, CombShape, Jackknife, NoSegments, NoTeeth, Prepared, Roulette,
+    RouletteError, RunningCumulant, SymmetricMeans, Telescoping, TelescopingError, UnbiasedRayMarching,
+    expected_order, predicted_naive_bias, predicted_relative_variance, teeth_for,
+};
 pub use estimator::{Interaction, TransmittanceEstimator, TransmittanceFunction};
 pub use explorers::{Explorers, TooFewExplorers};
+pub use factors::FactorLaw;
 pub use generalised_poisson::{GeneralisedPoisson, GeneralisedPoissonError};
+pub use hybrid::{Choice, Experience, Forecast, Hybrid, Pilot};
+pub use jittered_ratio::{EpsilonError, JitteredRatio, JitteredRatioInCells};
 pub use line_integral::{LineIntegral, NoSplits, Starts};
 pub use next_flight::{NextFlight, NextFlightVersion};
 pub use p_series::{PSeries, PSeriesVersion, PivotError};
@@ -66,6 +88,7 @@ pub use product_law::{HIGHEST_MOMENT, MOMENTS, ProductLaw};
 pub use progressive_majorant::{ProgressiveMajorant, StartError};
 pub use ray_marching::{NoSteps, Offset, RayMarching};
 pub use regular::Regular;
+pub use residual_cells::{RateError, ResidualCells};
 pub use signed_product::SignedProduct;
 pub use theory::{ClosedForm, Theory};
 pub use tracking::Tracking;

@@ -2,7 +2,7 @@
 
 use crate::{ClosedForm, Theory, TransmittanceEstimator};
 use fairflight_media::{
-    AnalyticCosine, Breakpoints, Counted, OpticalThickness, Ray, RayQuadrature, Tolerance,
+    AnalyticCosine, Breakpoints, Counted, OpticalThickness, PiecewiseLinear, Ray, RayQuadrature, Tolerance,
 };
 use fairflight_sources::Seeded;
 use glam::DVec3;
@@ -73,4 +73,9 @@ pub(crate) fn mean_and_square<F: OpticalThickness + Breakpoints>(field: &F) -> (
     let moments = RayQuadrature::new(field, &[])
         .integrate(Tolerance::TIGHT, |_, sigma_t| [sigma_t, length * sigma_t.powi(2)]);
     (moments.value[0], moments.value[1])
+}
+
+/// A rise from 0.1 to 1.5 over 1 and a fall to 0.2 over 2.
+pub(crate) fn tent() -> PiecewiseLinear {
+    PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).unwrap()
 }

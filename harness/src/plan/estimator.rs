@@ -1,6 +1,6 @@
 //! An estimator of any kind, instantiated over the field that it meets.
 
-use super::{AnyControl, AnyProfile, AnySampling, Field, Knowledge};
+use super::{AnyControl, AnyProfile, AnySampling, Beyond, Field, Knowledge};
 use crate::Failure;
 use crate::spec::EstimatorSpec;
 use fairflight_collision::{CollisionModel, DoubleParticle, SingleParticle};
@@ -33,6 +33,8 @@ pub enum AnyEstimator {
     },
     /// The biased baseline.
     RayMarching(RayMarching),
+    /// One of those beyond the source papers.
+    Beyond(Beyond),
 }
 
 /// What the harness asks of an estimator on a field: an estimate, its theory, and both watched and counted look-ups.
@@ -83,7 +85,11 @@ pub trait EstimatorJob {
 }
 
 impl AnyEstimator {
-    pub(super) fn build(spec: &EstimatorSpec, profile: &AnyProfile) -> Result<Self, Failure> {
+    /// Prepares an estimator for a profile.
+    ///
+    /// # Errors
+    /// If a parameter is not lawful there.
+    pub fn build(spec: &EstimatorSpec, profile: &AnyProfile) -> Result<Self, Failure> {
         Ok(match spec {
             EstimatorSpec::Woodcock { majorant } => Self::Woodcock { majorant: *majorant },
             EstimatorSpec::DoubleParticle { sampling, control } => {
@@ -104,6 +110,7 @@ impl AnyEstimator {
                 estimator: LineIntegral::new(*splits)
                     .map_err(|error| Failure::refused(format!("estimator.splits: {error}")))?,
             },
+            EstimatorSpec::Beyond(spec) => Self::Beyond(Beyond::build(spec, profile)?),
             EstimatorSpec::RayMarching { steps, offset } => Self::RayMarching(
                 RayMarching::new(*steps, *offset)
                     .map_err(|error| Failure::refused(format!("estimator.steps: {error}")))?,
@@ -129,6 +136,7 @@ impl AnyEstimator {
             Self::SingleParticle(estimator) => job.run(field, estimator),
             Self::LineIntegral { majorant, estimator } => job.run(bounded(*majorant)?, *estimator),
             Self::RayMarching(estimator) => job.run(field, *estimator),
+            Self::Beyond(estimator) => job.run(field, estimator),
         })
     }
 
@@ -146,6 +154,7 @@ impl AnyEstimator {
             Self::SingleParticle(tracking) => scores_of(tracking, sigma_t, length, unit),
             Self::LineIntegral { majorant, .. } => scores::line_integral(majorant * length, unit),
             Self::RayMarching(_) => scores::ray_marching(sigma_t, length, unit),
+            Self::Beyond(beyond) => beyond.scores(unit),
         }
     }
 
@@ -155,7 +164,7 @@ impl AnyEstimator {
         match self {
             Self::DoubleParticle(tracking) => tracking.control().lookups(),
             Self::SingleParticle(tracking) => tracking.control().lookups(),
-            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) => 0,
+            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) | Self::Beyond(_) => 0,
         }
     }
 
@@ -170,7 +179,9 @@ impl AnyEstimator {
         match self {
             Self::DoubleParticle(tracking) => both(tracking.control(), tracking.sampling()),
             Self::SingleParticle(tracking) => both(tracking.control(), tracking.sampling()),
-            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) => Vec::new(),
+            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) | Self::Beyond(_) => {
+                Vec::new()
+            }
         }
     }
 
@@ -179,6 +190,7 @@ impl AnyEstimator {
     pub fn claimed_majorant(&self) -> Option<f64> {
         match self {
             Self::Woodcock { majorant } | Self::LineIntegral { majorant, .. } => Some(*majorant),
+            Self::Beyond(beyond) => beyond.claimed_majorant(),
             Self::DoubleParticle(_) | Self::SingleParticle(_) | Self::RayMarching(_) => None,
         }
     }

@@ -283,7 +283,7 @@ impl IntegratorSpec {
             Self::Vpl(spec) => return spec.biased_by_design(is_biased),
             Self::ParticleTracer(_) | Self::LineSplitting { .. } => false,
         };
-        biased.then_some("ray_marching is a biased baseline")
+        biased.then_some("its estimator of transmittance is a biased baseline")
     }
 }
 

@@ -55,12 +55,18 @@ impl AnyMedium {
 }
 
 impl AnyMedium {
+    /// The bound of σ_t that the medium declares \[1/length\].
+    #[must_use]
+    pub fn upper_bound(&self) -> Option<f64> {
+        self.with(UpperBound)
+    }
+
     /// The greatest extinction that the medium declares, positive also where there is none; `key` is what needs it.
     ///
     /// # Errors
     /// If it declares none.
     pub(super) fn greatest_extinction(&self, key: &str) -> Result<f64, Failure> {
-        let bound = self.with(UpperBound).ok_or_else(|| {
+        let bound = self.upper_bound().ok_or_else(|| {
             Failure::refused(format!(
                 "{key}: this key is missing, and the medium declares no majorant that could stand for it"
             ))

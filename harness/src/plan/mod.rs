@@ -4,6 +4,7 @@
 //! type, so that a look-up is a direct call. Control and sampling extinction are enums inside the estimator: their
 //! branches are the same at every collision, and a bench shows that they cost nothing measurable.
 
+mod beyond;
 mod control;
 mod estimator;
 mod field;
@@ -21,6 +22,7 @@ mod transport;
 mod voxel_lattice;
 mod walk;
 
+pub use beyond::Beyond;
 pub use control::AnyControl;
 pub use estimator::{AnyEstimator, Estimator, EstimatorJob, Lawful};
 pub use field::{Field, Knowledge, KnownField, ThicknessMethod};

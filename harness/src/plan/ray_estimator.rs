@@ -1,6 +1,6 @@
 //! An estimator of transmittance of any kind, prepared anew for each ray of a scene.
 
-use super::AnyControl;
+use super::{AnyControl, Beyond};
 use crate::Failure;
 use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle};
@@ -43,6 +43,8 @@ pub enum RayEstimator {
     },
     /// The biased baseline.
     RayMarching(RayMarching),
+    /// One of those beyond the source papers that do not depend on the ray.
+    Beyond(Beyond),
 }
 
 /// Tracking without its profile.
@@ -100,6 +102,7 @@ impl RayEstimator {
                 majorant: *majorant,
                 estimator: LineIntegral::new(*splits).map_err(|error| refuse("splits", &error))?,
             },
+            EstimatorSpec::Beyond(spec) => Self::Beyond(Beyond::for_all_rays(spec, key)?),
             EstimatorSpec::RayMarching { steps, offset } => {
                 Self::RayMarching(RayMarching::new(*steps, *offset).map_err(|error| refuse("steps", &error))?)
             }
@@ -112,7 +115,9 @@ impl RayEstimator {
         let kind = match self {
             Self::DoubleParticle(tracking) => Some(tracking.control),
             Self::SingleParticle(tracking) => Some(tracking.control),
-            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) => None,
+            Self::Woodcock { .. } | Self::LineIntegral { .. } | Self::RayMarching(_) | Self::Beyond(_) => {
+                None
+            }
         };
         let control = match kind {
             Some(RayControl::Explorers(count)) => AnyControl::Explorers(
@@ -149,6 +154,7 @@ impl<M: Medium> RayTransmittance<M> for RayWorker<'_> {
                 watched(ray, bounded(*majorant), estimator, unlawful, source)
             }
             RayEstimator::RayMarching(estimator) => watched(ray, ray, estimator, unlawful, source),
+            RayEstimator::Beyond(estimator) => watched(ray, ray, estimator, unlawful, source),
         }
     }
 }

@@ -249,7 +249,7 @@ impl PrimaryPlan {
                     .map_err(|error| Failure::refused(format!("integrator.estimator.splits: {error}")))?;
                 Ok(Self::Line { majorant: *majorant, line, starts: spec.starts })
             }
-            EstimatorSpec::Woodcock { .. } => Err(Failure::refused(
+            EstimatorSpec::Woodcock { .. } | EstimatorSpec::Beyond(_) => Err(Failure::refused(
                 "integrator.estimator.kind: must be regular, double_particle, single_particle, line_integral or \
                  ray_marching for single_scattering, which asks for transmittance at every distance",
             )),

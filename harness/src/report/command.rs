@@ -1,10 +1,10 @@
 //! `harness report`: measure, then write.
 
-use super::document;
-use super::registry::{ReportKind, Study, find};
+use super::document::{self, Volume};
+use super::registry::{REPORTS, ReportKind, Study, find};
 use super::result::Report;
 use super::stability::stability;
-use super::study::{Options, Volume, standard};
+use super::study::{Options, standard};
 use super::write::{self, Files};
 use crate::cli::ReportArguments;
 use crate::{DONE, Environment, Failure, UNSOUND};
@@ -25,6 +25,15 @@ fn report(
     environment: &Environment,
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
+    if arguments.vdb.is_some() && !kind.takes_volume {
+        let takers: Vec<&str> =
+            REPORTS.iter().filter(|kind| kind.takes_volume).map(|kind| kind.name).collect();
+        return Err(Failure::refused(format!(
+            "report {}: --vdb is an option of {} only",
+            kind.name,
+            takers.join(" and ")
+        )));
+    }
     let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(kind.name));
     let (seconds, sound) = match kind.study {
         Study::Standard => {
@@ -34,17 +43,12 @@ fn report(
             (report.seconds, is_sound(&report))
         }
         Study::Document(study) => {
-            if arguments.vdb.is_some() {
-                return Err(Failure::refused(format!(
-                    "report {}: --vdb is an option of the standard report only",
-                    kind.name
-                )));
-            }
             let document = measured_and_written(&folder, arguments, environment, || {
                 let options = document::Options {
                     quick: arguments.quick,
                     seed: arguments.seed,
                     threads: rayon::current_num_threads(),
+                    vdb: volume(arguments),
                 };
                 study(&options, environment)
             })?;
@@ -69,15 +73,16 @@ fn measured_and_written<R: Files + Send + Sync>(
     Ok(report)
 }
 
+fn volume(arguments: &ReportArguments) -> Option<Volume> {
+    let file = arguments.vdb.clone()?;
+    Some(Volume { file, grid: arguments.grid.clone(), scale: arguments.scale })
+}
+
 fn standard_report(arguments: &ReportArguments, environment: &Environment) -> Result<Report, Failure> {
     let options = Options {
         quick: arguments.quick,
         seed: arguments.seed,
-        vdb: arguments.vdb.clone().map(|file| Volume {
-            file,
-            grid: arguments.grid.clone(),
-            scale: arguments.scale,
-        }),
+        vdb: volume(arguments),
         threads: rayon::current_num_threads(),
     };
     let mut report = standard(&options, environment)?;
@@ -106,6 +111,7 @@ mod tests {
     const KIND: ReportKind = ReportKind {
         name: "made-up",
         about: "",
+        takes_volume: false,
         study: Study::Document(|options, _| {
             let mut document = fixture_document();
             // The seed decides, so that both ends can be seen.
@@ -133,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_volume_is_for_the_standard_report() {
+    fn a_volume_is_for_reports_that_take_one() {
         let root = tempfile::tempdir().unwrap();
         let arguments = ReportArguments {
             out: Some(root.path().join("out")),

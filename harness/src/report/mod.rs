@@ -2,6 +2,7 @@
 
 pub(crate) mod command;
 pub mod document;
+mod estimators;
 mod free_flight;
 mod particle_tracing;
 pub(crate) mod registry;

@@ -1,7 +1,7 @@
 //! The reports that there are, by name.
 
 use super::document::{Document, Options};
-use super::{free_flight, particle_tracing, single_scattering, virtual_lights};
+use super::{estimators, free_flight, particle_tracing, single_scattering, virtual_lights};
 use crate::{Environment, Failure};
 
 /// A report that can be asked for.
@@ -10,6 +10,8 @@ pub(crate) struct ReportKind {
     pub(crate) name: &'static str,
     /// What it is about, for `harness list`.
     pub(crate) about: &'static str,
+    /// Whether it takes a volume.
+    pub(crate) takes_volume: bool,
     /// How it is measured.
     pub(crate) study: Study,
 }
@@ -24,31 +26,42 @@ pub(crate) enum Study {
 }
 
 /// All reports; the first is the default.
-pub(crate) const REPORTS: [ReportKind; 5] = [
+pub(crate) const REPORTS: [ReportKind; 6] = [
     ReportKind {
         name: "standard",
         about: "transmittance estimators against their closed forms",
+        takes_volume: true,
         study: Study::Standard,
     },
     ReportKind {
         name: "particle-tracing",
         about: "multiple scattering over the sampling extinction: three versions, noise, growth, speed",
+        takes_volume: false,
         study: Study::Document(particle_tracing::document),
     },
     ReportKind {
         name: "single-scattering",
         about: "a point light in a medium: all methods at equal look-ups, speed against error",
+        takes_volume: false,
         study: Study::Document(single_scattering::document),
     },
     ReportKind {
         name: "free-flight",
         about: "distance samplers by their law, algorithm 2 from homogeneous to inhomogeneous, two wavelengths",
+        takes_volume: false,
         study: Study::Document(free_flight::document),
     },
     ReportKind {
         name: "vpl",
         about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
+        takes_volume: false,
         study: Study::Document(virtual_lights::document),
+    },
+    ReportKind {
+        name: "estimators",
+        about: "all estimators of transmittance: the canonical plane, random rays, speed against error, which to use",
+        takes_volume: true,
+        study: Study::Document(estimators::document),
     },
 ];
 

@@ -40,6 +40,11 @@ impl<'a> Run<'a> {
         self.quick_or(48, 128)
     }
 
+    /// There are so many measurements in all.
+    pub(super) fn expect(&self, measurements: u64) {
+        self.progress.set_length(measurements);
+    }
+
     /// One more measurement is done.
     pub(super) fn advance(&self) {
         self.progress.inc(1);

@@ -1,6 +1,6 @@
 //! The estimator of an experiment.
 
-use super::Node;
+use super::{BeyondSpec, Node};
 use crate::Failure;
 use fairflight_collision::{Albedo, Version};
 use fairflight_transmittance::Offset;
@@ -45,6 +45,8 @@ pub enum EstimatorSpec {
         /// Where in its step a look-up lies.
         offset: Offset,
     },
+    /// One of those beyond the source papers.
+    Beyond(BeyondSpec),
 }
 
 /// A sampling extinction.
@@ -86,7 +88,7 @@ pub enum ControlSpec {
 const MOST_POINTS: u64 = 10_000_000;
 
 impl EstimatorSpec {
-    /// The names of the kinds.
+    /// The names of the kinds of the source papers.
     pub const KINDS: [&str; 5] =
         ["woodcock", "double_particle", "single_particle", "line_integral", "ray_marching"];
 
@@ -117,9 +119,13 @@ impl EstimatorSpec {
                 steps: object.required("steps")?.integer(1, MOST_POINTS)? as u32,
                 offset: if object.required("jitter")?.boolean()? { Offset::Jittered } else { Offset::Fixed },
             },
-            _ => {
-                return Err(kind.refuse(format!("must be {}", one_of(&Self::KINDS))));
-            }
+            name => match BeyondSpec::read(name, &object)? {
+                Some(beyond) => Self::Beyond(beyond),
+                None => {
+                    let names: Vec<&str> = Self::KINDS.into_iter().chain(BeyondSpec::KINDS).collect();
+                    return Err(kind.refuse(format!("must be {}", one_of(&names))));
+                }
+            },
         };
         object.finish()?;
         Ok(spec)
@@ -128,7 +134,11 @@ impl EstimatorSpec {
     /// Whether this is a labelled biased baseline.
     #[must_use]
     pub fn is_biased_baseline(&self) -> bool {
-        matches!(self, Self::RayMarching { .. })
+        match self {
+            Self::RayMarching { .. } => true,
+            Self::Beyond(beyond) => beyond.is_biased_baseline(),
+            _ => false,
+        }
     }
 }
 

@@ -6,7 +6,9 @@ use super::{Check, Law};
 use crate::freeflight::{FlightExpectation, ObservedFlight, Weights, check};
 use crate::{CheckResult, Run};
 use fairflight_collision::Version;
-use fairflight_freeflight::{ClosedForm, FreeFlight, Inversion, Newton, Regular, Tracking, Woodcock};
+use fairflight_freeflight::{
+    ClosedForm, FreeFlight, Inversion, JitteredFlight, Newton, Regular, Tracking, Woodcock,
+};
 use fairflight_media::{
     Breakpoints, Cells, Constant, FieldError, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
     PiecewiseLinear,
@@ -14,7 +16,8 @@ use fairflight_media::{
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Flights of a quick run: of a sampler with weights of 1; and of one whose weights and look-ups want more.
+/// Flights of a quick run: of a sampler with weights of 1 (and of the jittered one, whose look-ups are many); and of one whose
+/// weights and look-ups want more.
 const WITHOUT_LOOKUPS: u64 = 100_000;
 const WITH_LOOKUPS: u64 = 200_000;
 
@@ -76,6 +79,9 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
                 let cells = PiecewiseConstant::new(vec![0.0, border, length], values.to_vec())?;
                 let borders = cells.breakpoints();
                 Ok((Woodcock::new(cells), borders))
+            }),
+            self.check("jittered", WITHOUT_LOOKUPS, Weights::One, || {
+                Ok((JitteredFlight::new(0.5).expect(LAWFUL), Vec::new()))
             }),
             self.tracking("tracking_terminating_above", Version::Terminating, 1.25),
             self.tracking("tracking_non_terminating_above", Version::NonTerminating, 1.25),
@@ -148,7 +154,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     }
 }
 
-fn examine<F, E>(
+pub(super) fn examine<F, E>(
     specimen: &Specimen<F>,
     sampler: &E,
     borders: &[f64],

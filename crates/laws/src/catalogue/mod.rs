@@ -1,14 +1,18 @@
 //! Every check by name: what `verify` runs.
 
+mod cells;
+mod combs;
 mod estimators;
 mod exact;
 mod freeflight;
 mod media;
 pub(crate) mod paths;
 mod phase;
+mod points;
 mod series;
 mod single_particle;
 mod specimen;
+mod spectral;
 mod vpl;
 
 use crate::{CheckResult, Kind, Run, hard_cases, twins};
@@ -58,8 +62,9 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `series/medium/estimator`, `freeflight/medium/sampler`, `paths/what/which`, `vpl/what/which`, `collision/model`, `phase/name`,
-    /// `twin/name`, `hard/number name`.
+    /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`,
+    /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
+    /// `phase/name`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
@@ -143,7 +148,11 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
     checks.extend(series::series());
+    checks.extend(combs::combs());
+    checks.extend(cells::in_cells());
     checks.extend(freeflight::free_flights());
+    checks.extend(spectral::spectral_flights());
+    checks.extend(points::point_sets());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());
     checks.extend(twins().into_iter().map(|twin| {

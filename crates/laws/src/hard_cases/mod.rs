@@ -12,6 +12,7 @@ mod heavy_tails;
 mod judging;
 mod refusals;
 mod signed;
+mod spectral;
 mod thickness;
 mod vacuum;
 mod variates;
@@ -155,6 +156,7 @@ pub fn hard_cases() -> Vec<HardCase> {
     cases.extend(variates::cases());
     cases.extend(refusals::cases());
     cases.extend(heavy_tails::cases());
+    cases.extend(spectral::cases());
     cases.extend(anisotropy::cases());
     cases.extend(connections::cases());
     cases.sort_by_key(|case| case.number);

@@ -3,9 +3,14 @@
 use super::{HardCase, LAWFUL, Outcome};
 use crate::DenseLattice;
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Bounds, Constant, OpticalThickness, PiecewiseConstant, Ray, Voxels};
+use fairflight_media::{
+    BoundCell, BoundGrid, BoundedInCells, Bounds, Constant, Extinction, InCells, OpticalThickness,
+    PiecewiseConstant, Ray, Voxels,
+};
 use fairflight_sources::{Scripted, Seeded};
-use fairflight_transmittance::{Explorers, Tracking, TransmittanceEstimator};
+use fairflight_transmittance::{
+    Explorers, JitteredRatioInCells, ResidualCells, Tracking, TransmittanceEstimator,
+};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// An affine function, which trilinear interpolation reproduces: ∫ along a segment is length times the value in its middle.
@@ -34,6 +39,47 @@ fn through(origin: DVec3, direction: DVec3) -> Outcome {
     Outcome { passes: outcome.passes && (closed / exact - 1.0).abs() <= 1e-13, ..outcome }
 }
 
+/// The same ray in cells of a grid of bounds: they cover it, every look-up is within its cell, and none is wider than a box may be.
+fn in_boxes(origin: DVec3, direction: DVec3) -> Outcome {
+    let lattice = DenseLattice::of([5, 5, 5], |[x, y, z]| affine(dvec3(x as f64, y as f64, z as f64)));
+    let voxels = Voxels::new(&lattice, DAffine3::IDENTITY, 1.0).expect(LAWFUL);
+    let (min, max) = (DVec3::ZERO, DVec3::splat(4.0));
+    let grid = BoundGrid::build(&voxels, (min, max), [4, 4, 4]).expect(LAWFUL);
+    let clip = match Bounds::aligned_box(min, max).expect(LAWFUL).clip(origin, direction, None) {
+        Ok(Some(clip)) => clip,
+        Ok(None) => return Outcome::said(false, "the ray misses"),
+        Err(error) => return Outcome::said(false, error.to_string()),
+    };
+    let ray = Ray::new(&voxels, &clip);
+    let mut cells = Vec::new();
+    grid.cells_along(ray.local_line(), clip.length, &mut cells);
+    let field = match InCells::new(&ray, cells.as_slice()) {
+        Ok(field) => field,
+        Err(error) => return Outcome::said(false, error.to_string()),
+    };
+    let at = |i: u32| clip.length * f64::from(i) / 1000.0;
+    let admitted = (0..=1000).map(at).all(|s| field.cells_admit(s, field.sigma_t(s)));
+    // Between two opposite corners of a box the affine function varies by the sum of its slopes.
+    let tight = cells.iter().all(|cell| cell.range() <= 0.1 + 1e-12);
+    // Both estimators stay below the transmittance of the minorants, and above that of the majorants.
+    let thickness = |bound: fn(&BoundCell) -> f64| -> f64 {
+        let mut from = 0.0;
+        cells.iter().map(|cell| bound(cell) * (cell.to - std::mem::replace(&mut from, cell.to))).sum()
+    };
+    let (low, high) = (thickness(|cell| cell.minorant), thickness(|cell| cell.majorant));
+    let tau = ray.optical_thickness(0.0, clip.length);
+    let mut source = Seeded::new(10);
+    let estimates = [
+        ResidualCells::default().estimate(&field, &mut source),
+        JitteredRatioInCells::new(0.5).expect(LAWFUL).estimate(&field, &mut source),
+    ];
+    let bounded = estimates.iter().all(|estimate| (0.0..=(-low).exp()).contains(estimate));
+    Outcome::said(
+        admitted && tight && bounded && low <= tau && tau <= high,
+        format!("{} cells, optical thickness {tau:.6} within [{low:.6}, {high:.6}]", cells.len()),
+    )
+}
+
 /// An interaction exactly on a discontinuity sees one side or the other, never neither.
 fn discontinuity() -> Outcome {
     let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.25, 0.75]).expect(LAWFUL);
@@ -56,6 +102,16 @@ pub(super) fn cases() -> Vec<HardCase> {
         ("through edges", dvec3(-1.0, -1.0, 0.5), dvec3(1.0, 1.0, 0.0)),
         ("through corners", DVec3::splat(-1.0), DVec3::ONE),
     ];
+    let grids = rays.map(|(title, origin, direction)| {
+        HardCase::deterministic(
+            10,
+            format!("bounds in cells of a ray {title}"),
+            "grid of bounds, residual and jittered ratio tracking in cells",
+            "the cells cover the ray, and every value is within its cell",
+            "exact",
+            move || in_boxes(origin, direction),
+        )
+    });
     let mut cases: Vec<HardCase> = rays
         .into_iter()
         .map(|(title, origin, direction)| {
@@ -69,6 +125,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             )
         })
         .collect();
+    cases.extend(grids);
     cases.push(HardCase::deterministic(
         10,
         "a collision at a discontinuity",

@@ -81,7 +81,7 @@ impl<F: Extinction> FreeFlight<F> for WithoutEnergy {
 }
 
 /// Judges `twin` by the law and the closed forms of its sibling `right`; the z is that of the score `shows`.
-fn judged<F, E, T>(
+pub(super) fn judged<F, E, T>(
     field: &F,
     (right, also): (&E, &[f64]),
     weights: Weights,

@@ -3,7 +3,9 @@
 //! A law that nothing can break tests nothing. Each statistical twin states its profile, its N and the |z| that it shows
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
+mod cells;
 mod collision_weights;
+mod combs;
 mod control;
 mod freeflight;
 mod line_integral;
@@ -11,8 +13,10 @@ mod logarithm;
 mod majorant;
 mod paths;
 mod phase;
+mod points;
 mod sampling;
 mod series;
+mod spectral;
 mod trial;
 mod variance;
 mod vpl;
@@ -102,12 +106,16 @@ impl std::fmt::Debug for Twin {
 #[must_use]
 pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
+    all.extend(cells::twins());
     all.extend(control::twins());
     all.extend(freeflight::twins());
+    all.extend(spectral::twins());
+    all.extend(points::twins());
     all.extend(majorant::twins());
     all.extend(sampling::twins());
     all.extend(line_integral::twins());
     all.extend(series::twins());
+    all.extend(combs::twins());
     all.extend(logarithm::twins());
     all.extend(variance::twins());
     all.extend(phase::twins());

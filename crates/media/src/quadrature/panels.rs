@@ -130,6 +130,44 @@ impl<T> Panels<T> {
         })
     }
 
+    /// As [`integrate`](Self::integrate), by parts: those between 0, the `ends` in increasing order and infinity. The integrand is told
+    /// the index of its part. The value of each part, and the total.
+    pub(super) fn integrate_parts<const K: usize>(
+        &mut self,
+        sample: &impl Fn(f64) -> T,
+        tolerance: Tolerance,
+        ends: &[f64],
+        integrand: impl Fn(usize, f64, &T) -> [f64; K],
+    ) -> (Vec<[f64; K]>, Integral<K>) {
+        self.split_at(ends, sample);
+        let parts = |panels: &[Panel<T>]| {
+            let mut part = 0;
+            let mut part_of = |panel: &Panel<T>| {
+                while ends.get(part).is_some_and(|&end| end <= panel.from) {
+                    part += 1;
+                }
+                part
+            };
+            panels.iter().map(&mut part_of).collect::<Vec<_>>()
+        };
+        let integrals = |panels: &[Panel<T>]| -> Vec<_> {
+            let of_part =
+                |(panel, part): (&Panel<T>, usize)| panel.integrals(|_, s, value| integrand(part, s, value));
+            panels.iter().zip(parts(panels)).map(of_part).collect()
+        };
+        let total = self.refine(sample, tolerance, integrals);
+        let mut values = vec![[0.0; K]; ends.len()];
+        for (part, integral) in parts(&self.panels).into_iter().zip(integrals(&self.panels)) {
+            // Rounding may leave a last end short of the length; what is beyond belongs to the last part.
+            if let Some(value) = values.get_mut(part.min(ends.len().saturating_sub(1))) {
+                for (value, of_panel) in value.iter_mut().zip(integral) {
+                    *value += of_panel.value;
+                }
+            }
+        }
+        (values, total)
+    }
+
     /// Refines until also the running integral inside every panel is within `tolerance`.
     pub(super) fn settle<const K: usize>(
         &mut self,

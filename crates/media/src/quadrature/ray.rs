@@ -51,6 +51,19 @@ impl<F: Extinction> RayQuadrature<F> {
         panels.integrate(&|s| field.sigma_t(s), tolerance, |s, &sigma_t| integrand(s, sigma_t))
     }
 
+    /// ∫ of each component of `integrand(part, s, sigma_t)` over each part of the profile, and over the whole. The parts lie
+    /// between 0 and the `ends` in increasing order, of which the last is the length. The tolerance is that of the whole.
+    pub fn integrate_parts<const K: usize>(
+        &mut self,
+        tolerance: Tolerance,
+        ends: &[f64],
+        integrand: impl Fn(usize, f64, f64) -> [f64; K],
+    ) -> (Vec<[f64; K]>, Integral<K>) {
+        let Self { field, panels } = self;
+        let integrand = |part: usize, s: f64, &sigma_t: &f64| integrand(part, s, sigma_t);
+        panels.integrate_parts(&|s| field.sigma_t(s), tolerance, ends, integrand)
+    }
+
     /// ∫ of each component of `outer(s, sigma_t, I(s))`, where `I(s) = ∫_0^s inner`.
     pub fn integrate_nested<const M: usize, const K: usize>(
         &mut self,
@@ -154,6 +167,25 @@ mod tests {
             let s = 0.1 * f64::from(i);
             assert!((cumulative.at(s)[0] - (s + 1.0 - s.cos())).abs() < 1e-12, "s = {s}");
         }
+    }
+
+    #[test]
+    fn parts_add_up_and_know_their_index() {
+        let mut quadrature = RayQuadrature::new(Wave, &[2.5]);
+        let ends = [1.0, 1.5, 6.0, 7.0];
+        let (parts, total) = quadrature.integrate_parts(Tolerance::TIGHT, &ends, |part, _, sigma| {
+            [sigma, part as f64, (sigma - 1.0).abs()]
+        });
+        let mut from = 0.0_f64;
+        for (i, (part, to)) in parts.iter().zip(ends).enumerate() {
+            assert!((part[0] - (to - from + from.cos() - to.cos())).abs() < 1e-12);
+            assert!((part[1] - i as f64 * (to - from)).abs() < 1e-12);
+            from = to;
+        }
+        let sum: f64 = parts.iter().map(|part| part[2]).sum();
+        assert!((sum - total.value[2]).abs() < 1e-12 && total.converged);
+        let mut empty = RayQuadrature::new(Constant::new(1.0, 0.0).unwrap(), &[]);
+        assert_eq!(empty.integrate_parts(Tolerance::TIGHT, &[], |_, _, sigma| [sigma]).0.len(), 0);
     }
 
     #[test]

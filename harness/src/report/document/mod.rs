@@ -1,22 +1,36 @@
-//! A report as a document: sections of text, charts, tables and pictures, whatever was studied.
+//! A report as a document: sections of text, charts, heat maps, tables and pictures, whatever was studied.
 //!
 //! A study fills a [`Document`]; one set of writers turns any of them into files. The standard report has a structure of its own,
 //! because its figures share one sweep.
 
 mod chart;
 mod gallery;
+mod heat_map;
 mod table;
 
 pub use chart::{Axis, Band, Chart, Curve, Mark, Point, Role, Scale, Vertical};
 pub use gallery::{Gallery, GalleryRow, Picture, Pixels};
+pub use heat_map::{Content, HeatMap, Numbers, Panel};
 pub use table::{Cell, Column, Table};
 
 use super::result::Claim;
 use crate::result::Provenance;
 use serde::Serialize;
+use std::path::PathBuf;
+
+/// An OpenVDB fog volume.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    /// The file.
+    pub file: PathBuf,
+    /// The grid; without it, the first float grid.
+    pub grid: Option<String>,
+    /// A factor in front of the voxel values \[1/length\].
+    pub scale: f64,
+}
 
 /// The choices of whoever asks for a document.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Fewer points and samples.
     pub quick: bool,
@@ -24,6 +38,8 @@ pub struct Options {
     pub seed: u64,
     /// The threads that measure, for the record: no number but a time depends on them.
     pub threads: usize,
+    /// A volume to be studied as well; only some reports take one.
+    pub vdb: Option<Volume>,
 }
 
 /// A whole report. All its texts are plain: writers escape what their format needs, and typeset σ_t and its like.
@@ -70,9 +86,9 @@ impl Document {
     }
 }
 
-/// A part of a document: its text first, then its charts, tables and galleries.
+/// A part of a document: its text first, then its charts, heat maps, tables and galleries.
 ///
-/// The ids of sections, charts, tables, galleries and pictures are names of files and places in the page: lower case letters,
+/// The ids of sections, charts, heat maps, tables, galleries and pictures are names of files and places in the page: lower case letters,
 /// digits, hyphens and points, each once in a document.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Section {
@@ -84,6 +100,8 @@ pub struct Section {
     pub text: Vec<String>,
     /// Drawings.
     pub charts: Vec<Chart>,
+    /// Drawings whose cells are coloured.
+    pub heat_maps: Vec<HeatMap>,
     /// Tables.
     pub tables: Vec<Table>,
     /// Pictures.

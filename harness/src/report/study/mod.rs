@@ -21,7 +21,7 @@ mod subject;
 mod sweep;
 mod walk;
 
-pub use options::{Options, Volume};
+pub use options::Options;
 
 use crate::plan::MediumLibrary;
 use crate::report::result::{MediumReport, Report};

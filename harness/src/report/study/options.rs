@@ -1,6 +1,6 @@
 //! What the standard report is asked for.
 
-use std::path::PathBuf;
+use crate::report::document::Volume;
 
 /// The choices of whoever asks for the standard report.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,15 +13,4 @@ pub struct Options {
     pub vdb: Option<Volume>,
     /// The threads that measure, for the record: no number but a time depends on them.
     pub threads: usize,
-}
-
-/// An OpenVDB fog volume.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Volume {
-    /// The file.
-    pub file: PathBuf,
-    /// The grid; without it, the first float grid.
-    pub grid: Option<String>,
-    /// A factor in front of the voxel values \[1/length\].
-    pub scale: f64,
 }

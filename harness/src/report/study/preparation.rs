@@ -11,7 +11,10 @@ pub(super) fn preparation_seconds(subject: &Subject, estimator: &AnyEstimator) -
     let control = match estimator {
         AnyEstimator::DoubleParticle(tracking) => tracking.control(),
         AnyEstimator::SingleParticle(tracking) => tracking.control(),
-        AnyEstimator::Woodcock { .. } | AnyEstimator::LineIntegral { .. } | AnyEstimator::RayMarching(_) => {
+        AnyEstimator::Woodcock { .. }
+        | AnyEstimator::LineIntegral { .. }
+        | AnyEstimator::RayMarching(_)
+        | AnyEstimator::Beyond(_) => {
             return 0.0;
         }
     };

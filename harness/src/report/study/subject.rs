@@ -1,10 +1,10 @@
 //! A medium and one ray through it: what the curves of the report are about.
 
-use super::Volume;
 use super::maximum::Maximum;
 use crate::Failure;
 use crate::plan::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::reference::Truth;
+use crate::report::document::Volume;
 use crate::report::result::RayFacts;
 use crate::spec::{MediumKind, MediumSpec};
 use fairflight_media::{AnalyticCosine, Bounds, PerlinParameters, Tolerance};

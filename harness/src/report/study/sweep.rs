@@ -139,7 +139,7 @@ fn measured(
     let truth = &subject.truth;
     let measurement = measure_plan(plan, truth, &|_| ()).map_err(|failure| failure.within(subject.id))?;
     let comparison = compare(plan, truth, prediction, &measurement, DEFAULT_ALPHA);
-    let Measurement { moments, lookups_per_sample, seconds } = measurement;
+    let Measurement { moments, lookups_per_sample, seconds, .. } = measurement;
     let n = moments.count() as f64;
     let relative = moments.scaled(1.0 / truth.transmittance());
     let relative_mean = relative.mean().unwrap_or(f64::NAN);

@@ -1,8 +1,11 @@
-//! The sRGB encoding for transmittance and radiance, a diverging map for errors.
+//! The sRGB encoding for transmittance and radiance, a diverging map for errors, a sequential one for heat maps.
 //!
 //! The diverging map is built in Oklab (Ottosson 2020): lightness falls and chroma grows equally fast on both sides of zero, blue
 //! for too dark, orange for too bright. Equal errors of either sign thus stand out equally, and the two hues stay apart in all
 //! common colour vision deficiencies.
+//!
+//! The sequential map rises in lightness alone: its hue turns from violet over blue and green to yellow only to make steps easier to
+//! tell, so that it reads the same in grey and for every colour vision.
 
 use super::palette::Rgb;
 
@@ -23,6 +26,32 @@ pub(crate) fn diverging(x: f64) -> Rgb {
     let lightness = LIGHT + (DARK - LIGHT) * x.abs();
     let chroma = CHROMA * x.abs();
     srgb_of_oklab([lightness, chroma * hue.cos(), chroma * hue.sin()])
+}
+
+/// Hues of the sequential map at its ends in Oklab \[rad\]: violet and yellow.
+const VIOLET: f64 = 5.15;
+const YELLOW: f64 = 1.85;
+/// Lightness of the sequential map at its ends.
+const LOWEST: f64 = 0.26;
+const HIGHEST: f64 = 0.95;
+/// Its chroma, which the blues between its ends limit, and how much the yellow end has more.
+const EVEN_CHROMA: f64 = 0.095;
+const MORE_CHROMA: f64 = 0.06;
+/// How many colours it has.
+pub(crate) const LEVELS: u16 = 64;
+
+/// The level of a fraction of the full scale; beyond 0 and 1 the ends of the map.
+pub(crate) fn level(x: f64) -> u16 {
+    // A cast saturates, and a NaN has no place in a map.
+    ((x * f64::from(LEVELS)) as u16).min(LEVELS - 1)
+}
+
+/// The colour of a level, dark for the lowest.
+pub(crate) fn sequential(level: u16) -> Rgb {
+    let x = f64::from(level) / f64::from(LEVELS - 1);
+    let hue = VIOLET + (YELLOW - VIOLET) * x;
+    let chroma = EVEN_CHROMA + MORE_CHROMA * x.powi(3);
+    srgb_of_oklab([LOWEST + (HIGHEST - LOWEST) * x, chroma * hue.cos(), chroma * hue.sin()])
 }
 
 /// The level of a transmittance, or of a channel of exposed radiance: the sRGB encoding, values outside \[0, 1\] shown as its ends.
@@ -84,6 +113,17 @@ mod tests {
             let wanted = LIGHT + (DARK - LIGHT) * x;
             assert!((lightness(x) - wanted).abs() < 0.01, "out of gamut at {x}");
         }
+    }
+
+    #[test]
+    fn the_sequential_map_rises_evenly_in_lightness() {
+        for level in 0..LEVELS {
+            let (r, g, b) = sequential(level);
+            let lightness = oklab_of_linear([r, g, b].map(|c| linear_of_srgb(f64::from(c) / 255.0)))[0];
+            let wanted = LOWEST + (HIGHEST - LOWEST) * f64::from(level) / f64::from(LEVELS - 1);
+            assert!((lightness - wanted).abs() < 0.006, "out of gamut at {level}: {lightness} for {wanted}");
+        }
+        assert_eq!([-1.0, 0.0, 0.5, 1.0, f64::INFINITY].map(level), [0, 0, 32, 63, 63]);
     }
 
     #[test]

@@ -61,6 +61,22 @@ fn rounded(x: f64, digits: usize) -> String {
     }
 }
 
+/// A round number in as few signs as it takes: labels of isolines.
+pub(crate) fn terse(x: f64) -> String {
+    let plain = format!("{x}").replace('-', "−");
+    if x == 0.0 || !x.is_finite() || (1e-3..1e4).contains(&x.abs()) {
+        return plain;
+    }
+    let scientific = format!("{x:e}");
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let power = power_of_ten(exponent.parse().unwrap_or(0));
+    match mantissa {
+        "1" => power,
+        "-1" => format!("−{power}"),
+        _ => format!("{}·{power}", mantissa.replace('-', "−")),
+    }
+}
+
 /// A number given as log10, three significant digits.
 pub(crate) fn short_of_log10(log10: f64) -> String {
     if log10.abs() < 300.0 {
@@ -98,6 +114,22 @@ mod tests {
         ];
         for (x, text) in cases {
             assert_eq!(short(x), text);
+        }
+    }
+
+    #[test]
+    fn round_numbers_are_short() {
+        let cases = [
+            (0.5, "0.5"),
+            (1.0, "1"),
+            (250.0, "250"),
+            (1e4, "10⁴"),
+            (2e-5, "2·10⁻⁵"),
+            (-1e6, "−10⁶"),
+            (-0.1, "−0.1"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(terse(x), text);
         }
     }
 

@@ -1,8 +1,7 @@
 //! An estimator of transmittance for whatever ray a scene asks for.
 
 use crate::Failure;
-use crate::spec::estimator::one_of;
-use crate::spec::{ControlSpec, EstimatorSpec, Node, SamplingSpec};
+use crate::spec::{BeyondSpec, ControlSpec, EstimatorSpec, Node, SamplingSpec};
 
 /// An estimator that is prepared for each ray anew.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,17 +19,15 @@ impl RayEstimatorSpec {
     /// If a key is missing, unknown or of the wrong kind, or a parameter is a function of the distance along one ray.
     pub fn read(node: &Node<'_>) -> Result<Self, Failure> {
         let object = node.object()?;
-        let kind = object.required("kind")?;
-        let name = kind.text()?;
-        if name == "regular" {
-            object.finish()?;
-            return Ok(Self::Regular);
-        }
-        if !EstimatorSpec::KINDS.contains(&name) {
-            let names: Vec<&str> = ["regular"].into_iter().chain(EstimatorSpec::KINDS).collect();
-            return Err(kind.refuse(format!("must be {}", one_of(&names))));
-        }
         let spec = EstimatorSpec::read(node)?;
+        if let EstimatorSpec::Beyond(beyond) = &spec {
+            if *beyond == BeyondSpec::Regular {
+                return Ok(Self::Regular);
+            }
+            if let Some(reason) = beyond.needs_one_ray() {
+                return Err(object.required("kind")?.reject(reason));
+            }
+        }
         if let EstimatorSpec::DoubleParticle { sampling, control }
         | EstimatorSpec::SingleParticle { sampling, control, .. } = &spec
         {

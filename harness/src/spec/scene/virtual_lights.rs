@@ -143,7 +143,7 @@ impl VplSpec {
         if self.component != ComponentSpec::All {
             Some("component: a part of the light only")
         } else if self.transport.estimator.as_ref().is_some_and(is_biased) {
-            Some("ray_marching is a biased baseline")
+            Some("its estimator of transmittance is a biased baseline")
         } else if self.clamp == ClampSpec::Unclamped {
             None
         } else {

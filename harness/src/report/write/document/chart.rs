@@ -9,10 +9,10 @@ use super::styles::Styles;
 use crate::report::document::{self, Chart, Curve, Mark, Role, Scale};
 use plotters::backend::DrawingBackend;
 
-const TOP: f64 = 24.0;
+pub(super) const TOP: f64 = 24.0;
 const HEIGHT: f64 = 760.0;
 /// A logarithmic axis goes no further below its greatest value: the rest of the curves would be flat.
-const DECADES: f64 = 12.0;
+pub(super) const DECADES: f64 = 12.0;
 /// Verticals of one chart differ in their dash.
 const VERTICALS: [&[f64]; 4] = [&[6.0, 6.0], &[16.0, 6.0], &[2.0, 5.0], &[16.0, 5.0, 3.0, 5.0]];
 /// Bands of one chart differ in their depth.
@@ -38,7 +38,7 @@ struct Figure<'a> {
 }
 
 /// A value in the units of a drawn axis: its log10 on a logarithmic one, where a negative value has no place.
-fn on(axis: &document::Axis, value: f64) -> f64 {
+pub(super) fn on(axis: &document::Axis, value: f64) -> f64 {
     match axis.scale {
         Scale::Linear => value,
         // Minus infinity for zero: below every range.

@@ -1,6 +1,6 @@
 //! What must hold of a document before it is written. A violation is a mistake of the study, and is told as such.
 
-use crate::report::document::{Axis, Document, Gallery, Pixels, Scale, Table};
+use crate::report::document::{Axis, Content, Document, Gallery, HeatMap, Panel, Pixels, Scale, Table};
 
 /// Names that writers use themselves.
 const RESERVED: [&str; 7] = ["index", "results", "tables", "summary", "soundness", "claims", "provenance"];
@@ -16,6 +16,10 @@ pub(super) fn check(document: &Document) -> Result<(), String> {
             for axis in [&chart.x, &chart.y] {
                 range(axis).map_err(|error| format!("chart {}: {error}", chart.id))?;
             }
+        }
+        for map in &section.heat_maps {
+            ids.push(&map.id);
+            heat_map(map).map_err(|error| format!("heat map {}: {error}", map.id))?;
         }
         for table in &section.tables {
             ids.push(&table.id);
@@ -52,6 +56,64 @@ fn range(axis: &Axis) -> Result<(), String> {
     } else {
         Err(format!("the axis \"{}\" cannot show {low} to {high}", axis.title))
     }
+}
+
+fn heat_map(map: &HeatMap) -> Result<(), String> {
+    [&map.x, &map.y].into_iter().try_for_each(range)?;
+    let (axis, isolines) = match &map.content {
+        Content::Values { colours, isolines, panels } => {
+            some_panels(map, panels)?;
+            (colours, isolines)
+        }
+        Content::Names { names, panels, numbers } => {
+            some_panels(map, panels)?;
+            let all = || panels.iter().flat_map(|panel| &panel.values);
+            if let Some(place) = all().flatten().find(|place| **place >= names.len()) {
+                return Err(format!("a cell has name {place} of {}", names.len()));
+            }
+            let Some(numbers) = numbers else { return Ok(()) };
+            let counts = |lists: &mut dyn Iterator<Item = usize>| lists.collect::<Vec<_>>();
+            let cells = counts(&mut panels.iter().map(|panel| panel.values.len()));
+            let given = counts(&mut numbers.panels.iter().map(Vec::len));
+            if given != cells {
+                return Err(format!("{given:?} numbers for {cells:?} cells"));
+            }
+            (&numbers.axis, &numbers.isolines)
+        }
+    };
+    range(axis)?;
+    match isolines.iter().find(|level| !has_place(axis, **level)) {
+        Some(level) => Err(format!("the axis \"{}\" has no place for a line at {level}", axis.title)),
+        None => Ok(()),
+    }
+}
+
+fn some_panels<T>(map: &HeatMap, panels: &[Panel<T>]) -> Result<(), String> {
+    if panels.is_empty() {
+        return Err("there is no panel".to_owned());
+    }
+    for panel in panels {
+        let (columns, rows) = (panel.x.len(), panel.y.len());
+        if columns * rows == 0 || panel.values.len() != columns * rows {
+            let count = panel.values.len();
+            return Err(format!("panel {:?} has {count} values for {columns} x {rows} cells", panel.label));
+        }
+        for (axis, centres) in [(&map.x, &panel.x), (&map.y, &panel.y)] {
+            let increasing = centres.windows(2).all(|pair| pair[0] < pair[1]);
+            if !(increasing && centres.iter().all(|&centre| has_place(axis, centre))) {
+                return Err(format!(
+                    "the axis \"{}\" needs increasing centres that it can show, not {centres:?}",
+                    axis.title
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a value is finite, and positive on a logarithmic axis.
+fn has_place(axis: &Axis, value: f64) -> bool {
+    value.is_finite() && (axis.scale == Scale::Linear || value > 0.0)
 }
 
 fn rows(table: &Table) -> Result<(), String> {
@@ -119,5 +181,37 @@ mod tests {
             values[picture.resolution[0] + 2][1] = f64::NAN;
         });
         assert!(pixel.contains("column 2, row 1"), "{pixel}");
+    }
+    #[test]
+    fn mistakes_in_heat_maps_are_told() {
+        let values = |document: &mut Document, spoil: fn(&mut Vec<Panel<Option<f64>>>, &mut Vec<f64>)| {
+            let content = &mut document.sections[0].heat_maps[0].content;
+            let Content::Values { panels, isolines, .. } = content else { panic!("of values") };
+            spoil(panels, isolines);
+        };
+        let refused_values = |spoil| refused(|document| values(document, spoil));
+        let short = refused_values(|panels, _| _ = panels[1].values.pop());
+        assert!(short.contains("\"cos\" has 383 values for 24 x 16 cells"), "{short}");
+        assert!(refused_values(|panels, _| panels.clear()).contains("no panel"));
+        assert!(refused_values(|panels, _| panels[0].x.swap(0, 1)).contains("increasing"));
+        let negative = refused_values(|panels, _| panels[0].y[0] = -1.0);
+        assert!(negative.contains("tightness"), "{negative}");
+        assert!(refused_values(|_, isolines| isolines.push(0.0)).contains("line at 0"));
+
+        type Names = Vec<Panel<Option<usize>>>;
+        let refused_names = |spoil: fn(&mut Names, &mut Vec<Vec<Option<f64>>>)| {
+            refused(|document| {
+                let content = &mut document.sections[0].heat_maps[1].content;
+                let Content::Names { panels, numbers: Some(numbers), .. } = content else {
+                    panic!("of names")
+                };
+                spoil(panels, &mut numbers.panels);
+            })
+        };
+        let beyond = refused_names(|panels, _| panels[0].values[7] = Some(6));
+        assert!(beyond.contains("name 6 of 6"), "{beyond}");
+        assert!(refused_names(|_, numbers| _ = numbers.pop()).contains("numbers for"));
+        let twice = refused(|document| document.sections[0].heat_maps[1].id = "plane".to_owned());
+        assert!(twice.contains("twice"), "{twice}");
     }
 }

@@ -1,4 +1,5 @@
-//! A small made-up document with every kind of content, and trouble: gaps, zeros, curves that leave, wide intervals, clipped pixels.
+//! A small made-up document with every kind of content, and trouble: gaps, zeros, curves that leave, wide intervals, clipped pixels,
+//! cells without a value.
 
 use crate::report::document::*;
 use crate::report::result::{Claim, ClaimVerdict};
@@ -9,6 +10,7 @@ pub(crate) fn document() -> Document {
     let mut measured = Section::new("measured", "Measured");
     measured.text = vec!["A paragraph on σ_samp with <markup> & more.".to_owned()];
     measured.charts = vec![variance(), shares()];
+    measured.heat_maps = vec![plane(), winners()];
     measured.tables = vec![table()];
     let mut pictures = Section::new("pictures", "Pictures");
     pictures.galleries = vec![gallery([12, 8])];
@@ -91,6 +93,91 @@ fn shares() -> Chart {
     // The same names as in the other chart: the same looks.
     chart.curves = vec![exact, Curve::method("spectral").with_marks(marks)];
     chart
+}
+
+const PROFILES: [&str; 6] = ["const", "cos", "gauss", "hole", "lin_inc", "lin_dec"];
+
+/// Transmittances and tightnesses.
+fn centres() -> [Vec<f64>; 2] {
+    let x = (0..24).map(|k| 0.01 + 0.98 * f64::from(k) / 23.0).collect();
+    let y = (0..16).map(|k| 10_f64.powf(-1.5 + 1.5 * f64::from(k) / 15.0)).collect();
+    [x, y]
+}
+
+/// Efficiency per look-up of a weight (1 - c y) per collision, in a medium that is `rough` times rougher than a homogeneous one.
+fn efficiency(transmittance: f64, y: f64, rough: f64, c: f64) -> f64 {
+    let thickness = -transmittance.ln();
+    let variance = (thickness * y * (1.0 + rough) / c).exp_m1() + 0.02 * rough * thickness.powi(2);
+    1.0 / (variance * (0.3 / c + thickness / y))
+}
+
+fn plane() -> HeatMap {
+    let [x, y] = centres();
+    let panel = |(k, label): (usize, &&str)| {
+        let mut panel = Panel::of(label, x.clone(), y.clone(), |x, y| Some(efficiency(x, y, k as f64, 1.0)));
+        if k == 3 {
+            // No value, zero, infinite.
+            panel.values[..12].fill(None);
+            panel.values[24..30].fill(None);
+            (panel.values[40], panel.values[100]) = (Some(0.0), Some(f64::INFINITY));
+        }
+        panel
+    };
+    let content = Content::Values {
+        colours: Axis::logarithmic("efficiency T²/(Var · look-ups) [1]"),
+        isolines: vec![1e-3, 0.01, 0.1, 1.0, 10.0],
+        panels: PROFILES.iter().enumerate().map(panel).collect(),
+    };
+    let tightness = Axis::logarithmic("tightness of the majorant [1]");
+    HeatMap::new("plane", "Efficiency over the plane", transmittance(), tightness, content)
+        .with_caption("Made up: no value in the lower left <corner>.")
+}
+
+fn transmittance() -> Axis {
+    Axis::linear("transmittance T [1]").within(0.0, 1.0)
+}
+
+fn winners() -> HeatMap {
+    let [x, y] = centres();
+    // The first two have curves, the one that never wins has not.
+    let names =
+        ["Woodcock", "spectral", "never the best", "unbiased marching", "jittered ratio", "telescoping"];
+    let all = |k: usize, x: f64, y: f64| {
+        let rough = k as f64;
+        [
+            3.0 * y.powi(2) * efficiency(x, y, rough, 1.0),
+            0.8 * efficiency(x, y, rough, 1.5),
+            0.0,
+            0.6 * efficiency(x, 0.3, rough, 2.0),
+            0.1 + 0.5 * x,
+            0.02 * efficiency(x, 0.02, 5.0 - rough, 1.0),
+        ]
+    };
+    let best = |k: usize, x: f64, y: f64| {
+        let all = all(k, x, y);
+        (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))
+    };
+    let gain = |k: usize, x: f64, y: f64| {
+        Some(all(k, x, y).into_iter().fold(0.0, f64::max) / efficiency(x, y, k as f64, 1.0))
+    };
+    let mut panels: Vec<Panel<Option<usize>>> = Vec::new();
+    let mut numbers = Vec::new();
+    for (k, label) in PROFILES.iter().enumerate() {
+        panels.push(Panel::of(label, x.clone(), y.clone(), |x, y| best(k, x, y)));
+        numbers.push(Panel::of(label, x.clone(), y.clone(), |x, y| gain(k, x, y)).values);
+    }
+    panels[5].values[..5].fill(None);
+    let content = Content::Names {
+        names: names.map(str::to_owned).to_vec(),
+        panels,
+        numbers: Some(Numbers {
+            axis: Axis::logarithmic("gain over ratio tracking [1]"),
+            isolines: vec![2.0, 10.0],
+            panels: numbers,
+        }),
+    };
+    let tightness = Axis::logarithmic("tightness of the majorant [1]");
+    HeatMap::new("winners", "The best of five", transmittance(), tightness, content)
 }
 
 fn table() -> Table {

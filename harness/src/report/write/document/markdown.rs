@@ -1,6 +1,7 @@
-//! `tables.md`: what is unsound, the ledger of claims, the tables.
+//! `tables.md`: what is unsound, the ledger of claims, the tables, heat maps in few numbers.
 
 use super::super::markdown::{claims, table};
+use super::heat_map;
 use super::table::{heading, words};
 use crate::report::document::Document;
 
@@ -21,15 +22,25 @@ pub(super) fn tables(document: &Document) -> String {
         text.push_str("\n## Claims\n\n");
         claims(&mut text, &document.claims);
     }
-    for it in document.sections.iter().flat_map(|section| &section.tables) {
-        text.push_str(&format!("\n## {}\n\n", it.title));
-        if !it.caption.is_empty() {
-            text.push_str(&format!("{}\n\n", it.caption));
+    for section in &document.sections {
+        for it in &section.heat_maps {
+            let (header, rows) = heat_map::summary(it);
+            titled(&mut text, [&it.title, &it.caption], &header, &rows);
         }
-        let header: Vec<String> = it.columns.iter().map(heading).collect();
-        let rows: Vec<Vec<String>> = it.rows.iter().map(|row| row.iter().map(words).collect()).collect();
-        let rows = rows.iter().map(|row| row.iter().map(String::as_str).collect());
-        table(&mut text, &header.iter().map(String::as_str).collect::<Vec<_>>(), rows);
+        for it in &section.tables {
+            let header: Vec<String> = it.columns.iter().map(heading).collect();
+            let rows: Vec<Vec<String>> = it.rows.iter().map(|row| row.iter().map(words).collect()).collect();
+            titled(&mut text, [&it.title, &it.caption], &header, &rows);
+        }
     }
     text
+}
+
+fn titled(text: &mut String, [title, caption]: [&str; 2], header: &[String], rows: &[Vec<String>]) {
+    text.push_str(&format!("\n## {title}\n\n"));
+    if !caption.is_empty() {
+        text.push_str(&format!("{caption}\n\n"));
+    }
+    let rows = rows.iter().map(|row| row.iter().map(String::as_str).collect());
+    table(text, &header.iter().map(String::as_str).collect::<Vec<_>>(), rows);
 }

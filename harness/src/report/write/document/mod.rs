@@ -3,6 +3,7 @@
 mod chart;
 mod check;
 mod gallery;
+mod heat_map;
 mod markdown;
 mod page;
 mod styles;
@@ -42,6 +43,17 @@ impl Files for Document {
             file(&format!("{}.png", chart.id), &chart.drawing.png)?;
             file(&format!("{}.csv", chart.id), chart.csv.as_bytes())?;
         }
+        let heat_maps: Vec<_> = self.sections.iter().flat_map(|section| &section.heat_maps).collect();
+        let heat_maps: Vec<_> = heat_maps
+            .par_iter()
+            .map(|map| heat_map::finished(map, &styles))
+            .collect::<Result<_, _>>()
+            .map_err(failed)?;
+        for map in &heat_maps {
+            file(&format!("{}.svg", map.id), map.drawing.svg.as_bytes())?;
+            file(&format!("{}.png", map.id), &map.drawing.png)?;
+            file(&format!("{}.csv", map.id), map.csv.as_bytes())?;
+        }
         for table in self.sections.iter().flat_map(|section| &section.tables) {
             file(&format!("{}.csv", table.id), table::csv(table).as_bytes())?;
         }
@@ -54,7 +66,7 @@ impl Files for Document {
         for exhibit in galleries.iter().flat_map(gallery::Hung::exhibits) {
             file(&format!("{}.png", exhibit.picture.id), &exhibit.png)?;
         }
-        let page = page::html(self, &charts, &galleries).map_err(failed)?;
+        let page = page::html(self, &charts, &heat_maps, &galleries).map_err(failed)?;
         file("index.html", page.as_bytes())
     }
 }

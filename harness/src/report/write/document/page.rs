@@ -4,6 +4,7 @@ use super::super::number::short;
 use super::super::page::{self, FigureView, PictureView};
 use super::chart::Finished;
 use super::gallery::{Exhibit, Hung};
+use super::heat_map;
 use super::table::{heading, is_number, words};
 use crate::report::document::{Cell, Document, Picture, Pixels, Section, Table};
 use minijinja::context;
@@ -16,6 +17,7 @@ struct SectionView<'a> {
     title: &'a str,
     text: &'a [String],
     charts: Vec<FigureView<'a>>,
+    heat_maps: Vec<FigureView<'a>>,
     tables: Vec<TableView<'a>>,
     galleries: Vec<GalleryView<'a>>,
 }
@@ -72,10 +74,11 @@ struct ExhibitView<'a> {
 pub(super) fn html(
     document: &Document,
     charts: &[Finished<'_>],
+    heat_maps: &[heat_map::Finished<'_>],
     galleries: &[Hung<'_>],
 ) -> Result<String, String> {
     let sections: Vec<SectionView<'_>> =
-        document.sections.iter().map(|part| section(part, charts, galleries)).collect();
+        document.sections.iter().map(|part| section(part, charts, heat_maps, galleries)).collect();
     page::render(
         "document",
         context! {
@@ -93,7 +96,12 @@ pub(super) fn html(
     )
 }
 
-fn section<'a>(part: &'a Section, charts: &[Finished<'a>], galleries: &'a [Hung<'a>]) -> SectionView<'a> {
+fn section<'a>(
+    part: &'a Section,
+    charts: &[Finished<'a>],
+    heat_maps: &[heat_map::Finished<'a>],
+    galleries: &'a [Hung<'a>],
+) -> SectionView<'a> {
     SectionView {
         id: &part.id,
         title: &part.title,
@@ -107,6 +115,17 @@ fn section<'a>(part: &'a Section, charts: &[Finished<'a>], galleries: &'a [Hung<
                 title: &it.chart.title,
                 caption: &it.chart.caption,
                 svg: page::inline(&it.drawing.svg, &it.chart.title),
+            })
+            .collect(),
+        heat_maps: part
+            .heat_maps
+            .iter()
+            .filter_map(|map| heat_maps.iter().find(|finished| finished.id == map.id))
+            .map(|it| FigureView {
+                id: it.id,
+                title: &it.map.title,
+                caption: &it.map.caption,
+                svg: page::inline(&it.drawing.svg, &it.alternative),
             })
             .collect(),
         tables: part.tables.iter().map(table).collect(),

@@ -1,6 +1,7 @@
-//! The look of each label, the same in all charts of a document.
+//! The look of each label, the same in all charts and heat maps of a document.
 
-use super::super::palette::{SERIES, Style, look};
+use super::super::palette::{Rgb, SERIES, Style, look};
+use super::heat_map;
 use crate::report::document::{Curve, Document, Role};
 use crate::report::result::Series;
 
@@ -28,13 +29,16 @@ pub(super) struct Styles {
 }
 
 impl Styles {
-    /// Labels get looks in the order in which they first appear; a label that is the name of a series of the standard report looks as
-    /// it does there. Beyond ten labels a colour comes back with another mark and dash.
+    /// Labels get looks in the order in which they first appear, those of curves before those of heat maps; a label that is the name of
+    /// a series of the standard report looks as it does there. Beyond ten labels a colour comes back with another mark and dash.
     pub(super) fn of(document: &Document) -> Self {
-        let curves =
-            || document.sections.iter().flat_map(|section| &section.charts).flat_map(|chart| &chart.curves);
+        let sections = || document.sections.iter();
+        let curves = sections().flat_map(|section| &section.charts).flat_map(|chart| &chart.curves);
+        let names = sections().flat_map(|section| &section.heat_maps).flat_map(heat_map::names_in);
+        let mut labels: Vec<(Role, &str)> = curves.map(|curve| (curve.role, &*curve.label)).collect();
+        labels.extend(names.map(|name| (Role::Method, name)));
         let named = |label: &str| SERIES.into_iter().find(|&series| look(series).name == label);
-        let taken: Vec<Series> = curves().filter_map(|curve| named(&curve.label)).collect();
+        let taken: Vec<Series> = labels.iter().filter_map(|label| named(label.1)).collect();
         let free: Vec<Style> = ORDER
             .into_iter()
             .filter(|series| !taken.contains(series))
@@ -42,11 +46,11 @@ impl Styles {
             .collect();
         let mut styles = Self { known: Vec::new() };
         let (mut methods, mut references) = (0, 0);
-        for curve in curves() {
-            if styles.find(curve).is_some() {
+        for (role, label) in labels {
+            if styles.find(role, label).is_some() {
                 continue;
             }
-            let style = match (curve.role, named(&curve.label)) {
+            let style = match (role, named(label)) {
                 (Role::Method, Some(series)) => look(series).style(),
                 (Role::Method, None) => {
                     methods += 1;
@@ -58,18 +62,27 @@ impl Styles {
                     Style { dash, ..look(Series::Woodcock).style() }
                 }
             };
-            styles.known.push((curve.role, curve.label.clone(), style));
+            styles.known.push((role, label.to_owned(), style));
         }
         styles
     }
 
     /// The look of a curve of the document.
     pub(super) fn style(&self, curve: &Curve) -> Style {
-        self.find(curve).unwrap_or_else(|| look(Series::Woodcock).style())
+        self.known_or_black(curve.role, &curve.label)
     }
 
-    fn find(&self, curve: &Curve) -> Option<Style> {
-        let same = |known: &&(Role, String, Style)| known.0 == curve.role && known.1 == curve.label;
+    /// The colour of a name in the document.
+    pub(super) fn colour(&self, name: &str) -> Rgb {
+        self.known_or_black(Role::Method, name).colour
+    }
+
+    fn known_or_black(&self, role: Role, label: &str) -> Style {
+        self.find(role, label).unwrap_or_else(|| look(Series::Woodcock).style())
+    }
+
+    fn find(&self, role: Role, label: &str) -> Option<Style> {
+        let same = |known: &&(Role, String, Style)| known.0 == role && known.1 == label;
         self.known.iter().find(same).map(|known| known.2)
     }
 }
@@ -121,5 +134,17 @@ mod tests {
         let at = |k: usize| styles.style(&Curve::method(&labels[k]));
         assert_eq!(at(1), look(Series::DoubleParticle).style());
         assert!(at(0) != at(1) && at(2) != at(1) && at(0) != at(2));
+    }
+
+    #[test]
+    fn a_name_in_a_heat_map_has_the_colour_of_its_curve() {
+        let document = super::super::fixture::document();
+        let styles = Styles::of(&document);
+        assert_eq!(styles.colour("spectral"), styles.style(&Curve::method("spectral")).colour);
+        let names = heat_map::names_in(&document.sections[0].heat_maps[1]);
+        assert!(names.len() > 3);
+        for (k, name) in names.iter().enumerate() {
+            assert!(names[..k].iter().all(|other| styles.colour(other) != styles.colour(name)), "{name}");
+        }
     }
 }

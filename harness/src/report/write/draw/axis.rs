@@ -38,6 +38,11 @@ impl Axis {
         Self { title: title.to_owned(), logarithmic: true, low: low - margin, high: high + margin }
     }
 
+    /// A logarithmic axis that shows exactly this range, given as log10.
+    pub(crate) fn exactly_logarithmic(title: &str, low: f64, high: f64) -> Self {
+        Self { logarithmic: true, ..Self::exactly(title, low, high) }
+    }
+
     /// A logarithmic axis of whole decades around values given as log10, between these limits.
     pub(crate) fn decades(title: &str, values: impl IntoIterator<Item = f64>, limits: [f64; 2]) -> Self {
         let (low, high) = extent(values).unwrap_or((-1.0, 1.0));
@@ -46,7 +51,8 @@ impl Axis {
         Self { title: title.to_owned(), logarithmic: true, low, high }
     }
 
-    pub(super) fn title(&self) -> &str {
+    /// What is on it.
+    pub(crate) fn title(&self) -> &str {
         &self.title
     }
 
@@ -61,7 +67,7 @@ impl Axis {
     }
 
     /// Place between the ends, 0 to 1 inside.
-    pub(super) fn fraction(&self, x: f64) -> f64 {
+    pub(crate) fn fraction(&self, x: f64) -> f64 {
         (x - self.low) / (self.high - self.low)
     }
 

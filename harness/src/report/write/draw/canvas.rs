@@ -48,6 +48,9 @@ impl Stroke {
     pub(crate) const fn solid(colour: Rgb, width: f64) -> Self {
         Self { colour, width, dash: &[] }
     }
+
+    /// A dark line in a light casing, which stands out from any colour: both, the casing first.
+    pub(crate) const CASED: [Self; 2] = [Self::solid((255, 255, 255), 4.5), Self::solid(super::INK, 2.0)];
 }
 
 /// Which part of the text is at its point.

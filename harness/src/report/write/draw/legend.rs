@@ -3,7 +3,7 @@
 use super::super::palette::{Rgb, Style, look, rank};
 use super::canvas::{Canvas, Drawn, Stroke, Text};
 use super::marks::Fill;
-use super::{FAINT, INK};
+use super::{FAINT, INK, Rect, hatched, numbered, tile};
 use crate::report::result::Series;
 use crate::report::write::palette::Marker;
 use plotters::backend::DrawingBackend;
@@ -25,6 +25,12 @@ pub(crate) enum Sign {
     Mark(Marker, Rgb, Fill),
     /// A mark with an interval.
     Interval,
+    /// A line in a casing.
+    Cased,
+    /// A filled cell with the number of its name.
+    Tile(Rgb, usize),
+    /// A cell without a value.
+    Hatched,
 }
 
 /// Entries of a legend, laid out in columns.
@@ -93,17 +99,22 @@ impl Legend {
 fn draw_sign<DB: DrawingBackend>(canvas: &Canvas<DB>, sign: Sign, (x, y): (f64, f64)) -> Drawn {
     let line = [(x, y), (x + KEY - 16.0, y)];
     let middle = (x + (KEY - 16.0) / 2.0, y);
+    let area = Rect { left: line[0].0, top: y - 10.0, right: line[1].0, bottom: y + 10.0 };
+    // High enough for a number.
+    let cell = Rect { top: y - 14.0, bottom: y + 14.0, ..area };
     match sign {
         Sign::Curve(style) => {
             canvas.line(&line, Stroke { colour: style.colour, width: 3.0, dash: style.dash })?;
             canvas.mark(style.marker, middle, 8.0, style.colour, Fill::Solid)
         }
         Sign::Line(stroke) => canvas.line(&line, stroke),
-        Sign::Area(colour, opacity) => {
-            let (left, right) = (line[0].0, line[1].0);
-            let corners = [(left, y - 10.0), (right, y - 10.0), (right, y + 10.0), (left, y + 10.0)];
-            canvas.area(&corners, colour, opacity)
+        Sign::Area(colour, opacity) => canvas.area(&area.corners(), colour, opacity),
+        Sign::Cased => Stroke::CASED.into_iter().try_for_each(|stroke| canvas.line(&line, stroke)),
+        Sign::Tile(colour, number) => {
+            tile(canvas, cell, colour)?;
+            numbered(canvas, middle, number, colour)
         }
+        Sign::Hatched => hatched(canvas, cell),
         Sign::Mark(marker, colour, fill) => canvas.mark(marker, middle, 8.0, colour, fill),
         Sign::Interval => {
             canvas.line(&[(middle.0, y - 14.0), (middle.0, y + 14.0)], Stroke::solid(INK, 2.0))?;

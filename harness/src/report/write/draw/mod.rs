@@ -1,17 +1,23 @@
-//! What all figures share: a canvas, axes, curves, marks and legends.
+//! What all figures share: a canvas, axes, curves, isolines, marks, legends and colour bars.
 
 mod axis;
+mod bar;
 mod canvas;
+mod isolines;
 mod legend;
 mod marks;
 mod panel;
 mod svg;
+mod tile;
 
 pub(crate) use axis::{Axis, nice_ceil};
-pub(crate) use canvas::{Canvas, Drawn, Stroke};
+pub(crate) use bar::ColourBar;
+pub(crate) use canvas::{Canvas, Drawn, Horizontal, Point, Stroke, Text};
+pub(crate) use isolines::isolines;
 pub(crate) use legend::{Legend, Sign};
 pub(crate) use marks::Fill;
-pub(crate) use panel::{Labels, Panel, Rect, side_by_side};
+pub(crate) use panel::{Labels, Panel, Rect, X_TITLE, Y_TITLE, side_by_side};
+pub(crate) use tile::{hatched, numbered, tile};
 
 use super::png;
 use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
@@ -29,6 +35,10 @@ pub(crate) trait Draw: Sync {
     fn size(&self) -> [u32; 2];
     /// Draws everything but the background.
     fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Drawn;
+    /// How many colours its bitmap may have.
+    fn colours(&self) -> usize {
+        png::DRAWING
+    }
 }
 
 /// Both forms of a drawing.
@@ -73,7 +83,7 @@ fn bitmap(drawing: &impl Draw) -> Result<Vec<u8>, String> {
         canvas.finish()?;
     }
     let size = [width as usize, height as usize];
-    png::indexed(&averaged(&pixels, size), size, png::DRAWING)
+    png::indexed(&averaged(&pixels, size), size, drawing.colours())
 }
 
 /// The mean of each block of fine pixels.

@@ -15,6 +15,21 @@ pub(crate) struct Rect {
     pub(crate) bottom: f64,
 }
 
+impl Rect {
+    /// Around it, from the upper left.
+    pub(crate) fn corners(&self) -> [Point; 4] {
+        [(self.left, self.top), (self.right, self.top), (self.right, self.bottom), (self.left, self.bottom)]
+    }
+
+    /// Whether they have a point in common.
+    pub(crate) fn touches(&self, other: &Self) -> bool {
+        self.left <= other.right
+            && other.left <= self.right
+            && self.top <= other.bottom
+            && other.top <= self.bottom
+    }
+}
+
 /// `count` equal rectangles in one row, `gap` apart.
 pub(crate) fn side_by_side(all: Rect, count: usize, gap: f64) -> Vec<Rect> {
     let width = (all.right - all.left - gap * (count - 1) as f64) / count as f64;
@@ -32,6 +47,17 @@ pub(crate) enum Labels {
     Both,
     XOnly,
     YOnly,
+    Neither,
+}
+
+impl Labels {
+    fn x(self) -> bool {
+        matches!(self, Self::Both | Self::XOnly)
+    }
+
+    fn y(self) -> bool {
+        matches!(self, Self::Both | Self::YOnly)
+    }
 }
 
 /// Where data is drawn.
@@ -42,6 +68,10 @@ pub(crate) struct Panel {
 }
 
 const TRIANGLE: f64 = 8.0;
+/// How far the title of the x axis is below a panel.
+pub(crate) const X_TITLE: f64 = 64.0;
+/// How far the title of the y axis is left of a panel.
+pub(crate) const Y_TITLE: f64 = 108.0;
 
 impl Panel {
     /// Grid, frame, ticks and titles.
@@ -49,6 +79,26 @@ impl Panel {
         let Rect { left, top, right, bottom } = self.rect;
         let columns = (((right - left) / 110.0) as usize).max(2);
         let rows = (((bottom - top) / 58.0) as usize).max(2);
+        self.ticks(canvas, labels, [columns, rows])?;
+        self.frame(canvas)?;
+        if labels.x() {
+            canvas.text(self.x.title(), (f64::midpoint(left, right), bottom + X_TITLE), Text::TITLE)?;
+        }
+        if labels.y() {
+            let look = Text { upright: true, ..Text::TITLE };
+            canvas.text(self.y.title(), (left - Y_TITLE, f64::midpoint(top, bottom)), look)?;
+        }
+        Ok(())
+    }
+
+    /// About so many ticks on each axis, their labels, and the grid.
+    pub(crate) fn ticks<DB: DrawingBackend>(
+        &self,
+        canvas: &Canvas<DB>,
+        labels: Labels,
+        [columns, rows]: [usize; 2],
+    ) -> Drawn {
+        let Rect { left, top, right, bottom } = self.rect;
         for tick in self.x.ticks(columns) {
             let x = left + self.x.fraction(tick.at) * (right - left);
             let major = !tick.label.is_empty();
@@ -57,7 +107,7 @@ impl Panel {
             if major {
                 canvas.line(&[(x, top), (x, bottom)], Stroke::solid(GRID, 1.0))?;
             }
-            if major && labels != Labels::YOnly {
+            if major && labels.x() {
                 let look = Text { anchor: Horizontal::Centre, ..Text::LABEL };
                 canvas.text(&tick.label, (x, bottom + 26.0), look)?;
             }
@@ -69,21 +119,19 @@ impl Panel {
             if major {
                 canvas.line(&[(left, y), (right, y)], Stroke::solid(GRID, 1.0))?;
             }
-            if major && labels != Labels::XOnly {
+            if major && labels.y() {
                 let look = Text { anchor: Horizontal::Right, ..Text::LABEL };
                 canvas.text(&tick.label, (left - 14.0, y), look)?;
             }
         }
-        let frame = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-        canvas.line(&frame, Stroke::solid(INK, 1.5))?;
-        if labels != Labels::YOnly {
-            canvas.text(self.x.title(), (f64::midpoint(left, right), bottom + 64.0), Text::TITLE)?;
-        }
-        if labels != Labels::XOnly {
-            let look = Text { upright: true, ..Text::TITLE };
-            canvas.text(self.y.title(), (left - 108.0, f64::midpoint(top, bottom)), look)?;
-        }
         Ok(())
+    }
+
+    /// The edge.
+    pub(crate) fn frame<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Drawn {
+        let Rect { left, top, right, bottom } = self.rect;
+        let frame = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+        canvas.line(&frame, Stroke::solid(INK, 1.5))
     }
 
     /// A title above the panel.
@@ -176,6 +224,11 @@ impl Panel {
         }
         let at = self.place(x, self.y.range()[0]).0;
         canvas.line(&[(at, self.rect.top), (at, self.rect.bottom)], stroke)
+    }
+
+    /// The parts of a curve that are inside, in pixels.
+    pub(crate) fn visible(&self, run: &[(f64, f64)]) -> Vec<Vec<Point>> {
+        self.clipped(run).0
     }
 
     fn inside_edge(&self, upwards: bool) -> (Marker, f64) {

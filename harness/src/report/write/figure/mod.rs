@@ -73,10 +73,11 @@ fn job<'a>(medium: &'a MediumReport, figure: impl Figure + Send + 'a) -> Job<'a>
 }
 
 /// Width of every figure in pixels.
-const WIDTH: u32 = 1600;
+pub(super) const WIDTH: u32 = 1600;
 /// Left of the panels: labels and title of the y axis.
-const LEFT: f64 = 144.0;
-const RIGHT: f64 = 1600.0 - 28.0;
+pub(super) const LEFT: f64 = 144.0;
+/// Where the panels end.
+pub(super) const RIGHT: f64 = 1600.0 - 28.0;
 /// Below the panels: labels and title of the x axis.
 pub(super) const FOOT: f64 = 100.0;
 /// Where a legend begins.

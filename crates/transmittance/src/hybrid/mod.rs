@@ -1,0 +1,214 @@
+//! An estimator chosen per ray by predicted variance times cost.
+
+mod experience;
+mod pilot;
+
+pub use experience::Experience;
+pub use pilot::Pilot;
+
+use crate::{
+    ClosedForm, Comb, CombShape, JitteredRatio, Roulette, Theory, TransmittanceEstimator,
+    UnbiasedRayMarching, predicted_relative_variance, teeth_for,
+};
+use fairflight_media::{Breakpoints, Majorant, RayQuadrature, Tolerance};
+use fairflight_sources::UniformSource;
+use pilot::{EPSILONS, FINENESSES};
+
+/// Unbiased ray marching as a whole or in segments, or jittered ratio tracking: what earlier rays through the medium make expect the least
+/// variance times look-ups.
+///
+/// **Law.** Each of the three is unbiased, and the choice depends on [`Experience`] alone, which is independent of the variates of the
+/// estimate: so is the whole.
+///
+/// **Why these.** A comb over a whole ray has errors that cancel where the field is smooth, down to rounding, but a second-order term
+/// k2²/(2P) that ruins it where k2 > 0.2 (kettunen-2021 as measured in `UnbiasedRayMarching`); in segments that term is divided by their
+/// number; jittered ratio tracking has none, stays in \[0, 1\], and costs more look-ups. Neither of them needs what the others do best.
+///
+/// **Variance and cost** are those of what was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hybrid {
+    choice: Choice,
+    /// Expected Var/T² and look-ups.
+    forecast: Forecast,
+}
+
+/// What a hybrid chose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Choice {
+    /// Unbiased ray marching.
+    Marching(UnbiasedRayMarching),
+    /// Jittered ratio tracking.
+    Jittered(JitteredRatio),
+}
+
+/// What is expected of an estimator before it is run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forecast {
+    /// Var/T² \[1\].
+    pub relative_variance: f64,
+    /// Look-ups of one estimate.
+    pub lookups: f64,
+}
+
+impl Forecast {
+    fn price(&self) -> f64 {
+        self.relative_variance * self.lookups
+    }
+}
+
+/// Where the second-order law of a comb ends: its third-order term is a tenth of it at k2 = 0.3, P = 0.1.
+const MOST_VARIANCE: f64 = 0.3;
+/// Without experience: strata of a quarter, which never fails by much.
+const CAUTIOUS: usize = 2;
+/// Variances below this are rounding, and not worth more look-ups.
+const ROUNDING: f64 = 1e-26;
+
+/// What is considered.
+#[derive(Clone, Copy)]
+enum Candidate {
+    /// One comb of 2^fineness times the rule's teeth over the whole ray.
+    Whole { fineness: usize, shape: CombShape },
+    /// 2^fineness times as many segments as the rule has teeth, of one tooth each.
+    Apart { fineness: usize },
+    /// Jittered ratio tracking.
+    Jittered { index: usize },
+}
+
+impl Candidate {
+    fn all() -> impl Iterator<Item = Self> {
+        let combs = (0..FINENESSES).flat_map(|fineness| {
+            let whole = |shape| Self::Whole { fineness, shape };
+            [whole(CombShape::EndpointMatched), whole(CombShape::Uniform), Self::Apart { fineness }]
+        });
+        combs.chain((0..EPSILONS.len()).map(|index| Self::Jittered { index }))
+    }
+
+    /// Var(optical thickness) that a pilot found for its combs; for jittered ratio tracking the relative variance itself.
+    fn variance(self, pilot: &Pilot) -> f64 {
+        match self {
+            Self::Whole { fineness, shape: CombShape::EndpointMatched } => pilot.matched[fineness],
+            Self::Whole { fineness, .. } => pilot.whole[fineness],
+            Self::Apart { fineness } => pilot.apart[fineness],
+            Self::Jittered { index } => pilot.jittered[index],
+        }
+    }
+}
+
+impl Hybrid {
+    /// Look-ups per unit of the majorant's optical thickness that an estimate may cost: with six, combs of up to four times the rule's
+    /// teeth, and strata down to a quarter.
+    pub const USUAL_BUDGET: f64 = 6.0;
+
+    /// The choice for a ray of this length, whose optical thickness in the majorant is `depth`, that costs at most `budget` look-ups per
+    /// unit of that: the least variance times look-ups in the geometric mean over the rays remembered.
+    ///
+    /// The cheapest of all is allowed whatever it costs. Without experience it is jittered ratio tracking: nobody knows then
+    /// whether a comb would do, and this always does.
+    #[must_use]
+    pub fn choose(experience: &Experience, length: f64, depth: f64, budget: f64) -> Self {
+        let teeth = teeth_for(depth);
+        let most = (budget * depth).max(f64::from(teeth) + 2.0);
+        let candidates = Candidate::all().filter_map(|candidate| {
+            let hybrid = Self::of(candidate, experience, length, (depth, teeth))?;
+            (hybrid.forecast.lookups <= most).then_some(hybrid)
+        });
+        candidates.min_by(|a, b| a.forecast.price().total_cmp(&b.forecast.price())).unwrap_or_else(|| Self {
+            choice: Choice::Jittered(strata(CAUTIOUS)),
+            forecast: jittered_cost(depth, CAUTIOUS),
+        })
+    }
+
+    /// A candidate with its forecast; `None` where there is no experience, or the law ends by which it could be forecast.
+    fn of(
+        candidate: Candidate,
+        experience: &Experience,
+        length: f64,
+        (depth, teeth): (f64, u32),
+    ) -> Option<Self> {
+        let pilots = experience.pilots();
+        let on_this_ray = |pilot: &Pilot| candidate.variance(pilot) * length / pilot.length;
+        let count = pilots.len() as f64;
+        if pilots.is_empty() {
+            return None;
+        }
+        let geometric_mean = |variance: &dyn Fn(&Pilot) -> f64| {
+            (pilots.iter().map(|pilot| variance(pilot).max(ROUNDING).ln()).sum::<f64>() / count).exp()
+        };
+        if let Candidate::Jittered { index } = candidate {
+            let relative_variance = geometric_mean(&on_this_ray);
+            let forecast = Forecast { relative_variance, ..jittered_cost(depth, index) };
+            return Some(Self { choice: Choice::Jittered(strata(index)), forecast });
+        }
+        let (comb, segments) = match candidate {
+            Candidate::Whole { fineness, shape } => (Comb::new(teeth << fineness, shape).ok()?, 1),
+            Candidate::Apart { fineness } => (Comb::new(1, CombShape::Uniform).ok()?, teeth << fineness),
+            Candidate::Jittered { .. } => return None,
+        };
+        // The roulette fits their mean, to which the worst contributes most: that is where a wrong one costs most.
+        let mean = pilots.iter().map(on_this_ray).sum::<f64>() / count / f64::from(segments);
+        if mean > MOST_VARIANCE {
+            return None;
+        }
+        let roulette = Roulette::tuned(mean);
+        let estimator = UnbiasedRayMarching::new(comb, roulette).in_segments(segments).ok()?;
+        let predicted = |pilot: &Pilot| predicted_relative_variance(on_this_ray(pilot), roulette, segments);
+        let forecast =
+            Forecast { relative_variance: geometric_mean(&predicted), lookups: estimator.expected_lookups() };
+        Some(Self { choice: Choice::Marching(estimator), forecast })
+    }
+
+    /// What it chose.
+    #[must_use]
+    pub fn choice(&self) -> &Choice {
+        &self.choice
+    }
+
+    /// What is expected of it; infinite without experience.
+    #[must_use]
+    pub fn forecast(&self) -> Forecast {
+        self.forecast
+    }
+}
+
+fn strata(index: usize) -> JitteredRatio {
+    JitteredRatio::new(EPSILONS[index]).expect("the list holds numbers above 0 and at most 1")
+}
+
+/// (exp(e) − 1)/e look-ups for each stratum of the optical thickness e.
+fn jittered_cost(depth: f64, index: usize) -> Forecast {
+    let strata = (depth / EPSILONS[index]).ceil().max(1.0);
+    let thickness = depth / strata;
+    let lookups = if thickness > 0.0 { strata * thickness.exp_m1() / thickness } else { 0.0 };
+    Forecast { relative_variance: f64::INFINITY, lookups }
+}
+
+impl<F: Majorant> TransmittanceEstimator<F> for Hybrid {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        match &self.choice {
+            Choice::Marching(estimator) => estimator.estimate(field, source),
+            Choice::Jittered(estimator) => estimator.estimate(field, source),
+        }
+    }
+
+    fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
+        match &self.choice {
+            Choice::Marching(estimator) => estimator.admits(field, s, sigma_t),
+            Choice::Jittered(estimator) => estimator.admits(field, s, sigma_t),
+        }
+    }
+}
+
+impl<F: Majorant + Breakpoints> ClosedForm<F> for Hybrid {
+    fn theory(
+        &self,
+        quadrature: &mut RayQuadrature<F>,
+        optical_thickness: f64,
+        tolerance: Tolerance,
+    ) -> Theory {
+        match &self.choice {
+            Choice::Marching(estimator) => estimator.theory(quadrature, optical_thickness, tolerance),
+            Choice::Jittered(estimator) => estimator.theory(quadrature, optical_thickness, tolerance),
+        }
+    }
+}

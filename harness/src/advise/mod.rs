@@ -1,0 +1,32 @@
+//! `harness advise`: which estimator of transmittance to use in a medium, and at what cost.
+//!
+//! Rays are sent through the medium; what each estimator would cost on them is forecast from a pilot of each ray, or found by a short
+//! trial where nothing forecasts it; the best few are measured.
+
+mod answer;
+mod forecast;
+mod question;
+mod trial;
+
+use crate::cli::AdviseArguments;
+use crate::{DONE, Environment, Failure};
+use std::io::{Read, Write};
+
+pub(crate) fn run(
+    arguments: &AdviseArguments,
+    environment: &Environment,
+    stdin: &mut dyn Read,
+    stdout: &mut dyn Write,
+    stderr: &mut dyn Write,
+) -> Result<i32, Failure> {
+    let question = question::Question::of(arguments, stdin)?;
+    let answer = environment
+        .on_threads(arguments.threads, || trial::answer(&question, arguments.seed, environment))?;
+    // A person who does not see this has the JSON all the same.
+    let _ = write!(stderr, "{}", answer.table());
+    let json = serde_json::to_string_pretty(&answer)
+        .map_err(|error| Failure::refused(format!("the answer: {error}")))?;
+    writeln!(stdout, "{json}")
+        .map_err(|error| Failure::NotWritten(format!("cannot write the answer: {error}")))?;
+    Ok(DONE)
+}

@@ -1,0 +1,118 @@
+//! What is asked: a medium, and the rays that matter in it.
+
+use crate::Failure;
+use crate::cli::AdviseArguments;
+use crate::comparison::{RaySet, chords};
+use crate::estimate::{named, read};
+use crate::plan::{AnyMedium, AnyProfile, MediumLibrary};
+use crate::spec::{MediumKind, MediumSpec, Node, SceneOverrides, SceneSpec};
+use fairflight_media::{Bounds, Tolerance};
+use fairflight_scene::Camera;
+use fairflight_sources::{Seeded, UniformSource, derive_seed};
+use serde_json::Value;
+use std::io::Read;
+
+/// Chords shorter than this share of the medium's extent say little.
+const LEAST: f64 = 0.1;
+/// How exactly the transmittance of a ray is known, relative to its optical thickness: well below any variance that is measured.
+const TOLERANCE: f64 = 1e-7;
+/// Camera rays that are tried for one that meets the medium.
+const TRIES: usize = 200;
+
+/// A medium and how its rays are chosen.
+pub(super) struct Question {
+    /// What it is called in the answer.
+    pub(super) name: String,
+    medium: AnyMedium,
+    bounds: Bounds,
+    camera: Option<Camera>,
+    rays: usize,
+    seed: u64,
+    majorant: Option<f64>,
+}
+
+impl Question {
+    pub(super) fn of(arguments: &AdviseArguments, stdin: &mut dyn Read) -> Result<Self, Failure> {
+        let library = MediumLibrary::default();
+        let question = |name: String, spec: &MediumSpec, camera| -> Result<Self, Failure> {
+            let (medium, bounds) = library.build(spec, "medium").map_err(|failure| failure.within(&name))?;
+            let &AdviseArguments { rays, seed, majorant, .. } = arguments;
+            Ok(Self { name, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
+        };
+        if let Some(file) = &arguments.vdb {
+            let kind =
+                MediumKind::Vdb { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
+            return question(file.display().to_string(), &MediumSpec { kind, bounds: None }, None);
+        }
+        let Some(file) = &arguments.medium else {
+            return Err(Failure::refused("advise: give MEDIUM.json, a scene, or --vdb FILE"));
+        };
+        let name = named(file);
+        let in_file = |failure: Failure| failure.within(&name);
+        let text = read(file, stdin).map_err(in_file)?;
+        let value: Value = serde_json::from_str(&text)
+            .map_err(|error| in_file(Failure::refused(format!("not JSON: {error}"))))?;
+        if value.get("camera").is_some() {
+            let overrides = SceneOverrides { samples_per_pixel: Some(1), seed: Some(arguments.seed) };
+            let scene = SceneSpec::parse(&text, overrides).map_err(in_file)?;
+            let volume = scene.medium.ok_or_else(|| {
+                in_file(Failure::refused("medium: this scene has none, there is nothing to estimate"))
+            })?;
+            return question(name.clone(), &volume.medium, Some(scene.camera));
+        }
+        let spec = MediumSpec::read(&Node::root(&value)).map_err(in_file)?;
+        question(name, &spec, None)
+    }
+
+    /// The rays with their truth.
+    pub(super) fn rays(&self) -> Result<RaySet, Failure> {
+        let in_medium = |failure: Failure| failure.within(&self.name);
+        let profiles = match &self.camera {
+            Some(camera) => self.camera_rays(camera),
+            None => chords(&self.medium, &self.bounds, self.rays, LEAST, derive_seed(self.seed, 0)),
+        }
+        .map_err(in_medium)?;
+        let majorant = match self.majorant {
+            Some(majorant) => majorant,
+            None => self.medium.upper_bound().ok_or_else(|| {
+                in_medium(Failure::refused(
+                    "medium: declares no majorant, which most estimators need; give `majorant` in it, or --majorant",
+                ))
+            })?,
+        };
+        let set = if majorant > 0.0 {
+            RaySet::of(&self.name, profiles, majorant, Tolerance::to(TOLERANCE)).map_err(in_medium)?
+        } else {
+            RaySet { name: self.name.clone(), rays: Vec::new(), mean: 0.0 }
+        };
+        if set.rays.is_empty() {
+            return Err(in_medium(Failure::refused(
+                "medium: no ray meets anything to speak of, so that every estimator is as good as any other",
+            )));
+        }
+        Ok(set)
+    }
+
+    /// Rays through random points of the image that meet the bounds.
+    fn camera_rays(&self, camera: &Camera) -> Result<Vec<AnyProfile>, Failure> {
+        let mut source = Seeded::new(derive_seed(self.seed, 1));
+        let [columns, rows] = camera.resolution();
+        let mut profiles = Vec::new();
+        for _ in 0..self.rays * TRIES {
+            let pixel =
+                [columns, rows].map(|side| ((source.next_uniform() * f64::from(side)) as u32).min(side - 1));
+            let line = camera.ray(pixel, [source.next_uniform(), source.next_uniform()]);
+            let clip = self
+                .bounds
+                .clip(line.origin, line.direction, None)
+                .map_err(|error| Failure::refused(format!("camera: {error}")))?;
+            if let Some(clip) = clip.filter(|clip| clip.length > 0.0) {
+                profiles.push(AnyProfile::ray(&self.medium, &clip)?);
+            }
+            if profiles.len() == self.rays {
+                break;
+            }
+        }
+        Ok(profiles)
+    }
+}

@@ -1,0 +1,124 @@
+//! Forecasts of all, trials of those that have none, measurements of the best few.
+
+use super::answer::{Advice, Answer, Contestant, How};
+use super::forecast::Signs;
+use super::question::Question;
+use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, Unit, entrants, facts, fight, gain, pilot};
+use crate::{Environment, Failure};
+use fairflight_sources::derive_seed;
+use rayon::prelude::*;
+
+/// Estimates per ray of a trial, and of a measurement.
+const TRIAL: Effort = Effort { samples: 64, counted: 64, closed: false };
+const MEASUREMENT: Effort = Effort { samples: 1024, counted: 256, closed: false };
+/// Rays of a trial.
+const TRIAL_RAYS: usize = 16;
+/// How many are measured beside ratio tracking.
+const BEST: usize = 5;
+
+/// What is expected of an entrant: mean ln(variance · look-ups) over the rays.
+struct Expected {
+    entrant: Entrant,
+    log_price: f64,
+    how: How,
+}
+
+pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) -> Result<Answer, Failure> {
+    let set = question.rays()?;
+    let facts = facts(&set, derive_seed(seed, 2));
+    let signs: Vec<Signs> = set
+        .rays
+        .par_iter()
+        .enumerate()
+        .map(|(i, ray)| {
+            let seed = derive_seed(derive_seed(seed, 3), i as u64);
+            Signs::of(ray, pilot(ray, seed), derive_seed(seed, 1))
+        })
+        .collect();
+    let progress = environment.progress(entrants().len() as u64 + (BEST as u64 + 1), "advising");
+    let mut expected: Vec<Expected> = Vec::new();
+    for (e, entrant) in entrants().into_iter().enumerate() {
+        // Not every medium knows its bounds in cells.
+        if entrant.needs_cells && entrant.on(&set.rays[0], &facts[0]).is_err() {
+            continue;
+        }
+        expected.push(expect(entrant, &set, &facts, &signs, derive_seed(derive_seed(seed, 4), e as u64))?);
+        progress.inc(1);
+    }
+    expected.sort_by(|a, b| a.log_price.total_cmp(&b.log_price));
+    // Ratio tracking is what all are compared with.
+    let chosen: Vec<&Expected> = expected
+        .iter()
+        .filter(|expected| expected.entrant.name == "ratio tracking")
+        .chain(expected.iter().filter(|expected| expected.entrant.name != "ratio tracking").take(BEST))
+        .collect();
+    let mut measured: Vec<(Entrant, Vec<Bout>)> = Vec::new();
+    for (e, expected) in chosen.into_iter().enumerate() {
+        let seed = derive_seed(derive_seed(seed, 5), e as u64);
+        measured.push((expected.entrant, measure(expected.entrant, &set, &facts, MEASUREMENT, seed)?));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let baseline = measured[0].1.clone();
+    let mut advice: Vec<Advice> = measured
+        .iter()
+        .filter_map(|(entrant, bouts)| {
+            let of = |unit| gain(bouts, &baseline, unit, derive_seed(seed, 6));
+            Some(Advice::of(entrant, bouts, (of(Unit::Lookups)?, of(Unit::Seconds)?), &set, &facts))
+        })
+        .collect();
+    advice.sort_by(|a, b| b.gain_per_lookup.value.total_cmp(&a.gain_per_lookup.value));
+    let contestants = expected.iter().map(|e| Contestant::of(e.entrant.name, e.log_price, e.how)).collect();
+    Ok(Answer::new(&question.name, &set, advice, contestants, environment.provenance(seed)))
+}
+
+/// A forecast on every ray, or a trial on some.
+fn expect(
+    entrant: Entrant,
+    set: &RaySet,
+    facts: &[Facts],
+    signs: &[Signs],
+    seed: u64,
+) -> Result<Expected, Failure> {
+    let forecasts: Option<Vec<f64>> = set
+        .rays
+        .iter()
+        .zip(facts)
+        .zip(signs)
+        .map(|((ray, facts), signs)| {
+            let forecast = match entrant.hybrid(ray, facts) {
+                Some(hybrid) => hybrid.forecast(),
+                None => signs.forecast(&entrant.spec(ray, facts)?)?,
+            };
+            Some(log_price(forecast.relative_variance, forecast.lookups))
+        })
+        .collect();
+    let (logs, how) = match forecasts {
+        Some(logs) => (logs, How::Forecast),
+        None => {
+            let few = RaySet { rays: set.rays.iter().take(TRIAL_RAYS).cloned().collect(), ..set.clone() };
+            let bouts = measure(entrant, &few, facts, TRIAL, seed)?;
+            (bouts.iter().map(|bout| log_price(bout.relative_variance, bout.lookups)).collect(), How::Trial)
+        }
+    };
+    Ok(Expected { entrant, log_price: logs.iter().sum::<f64>() / logs.len() as f64, how })
+}
+
+fn log_price(relative_variance: f64, lookups: f64) -> f64 {
+    relative_variance.max(1e-26).ln() + lookups.max(1.0).ln()
+}
+
+fn measure(
+    entrant: Entrant,
+    set: &RaySet,
+    facts: &[Facts],
+    effort: Effort,
+    seed: u64,
+) -> Result<Vec<Bout>, Failure> {
+    set.rays
+        .par_iter()
+        .zip(facts)
+        .enumerate()
+        .map(|(r, (ray, facts))| fight(ray, &entrant.on(ray, facts)?, effort, derive_seed(seed, r as u64)))
+        .collect()
+}

@@ -1,0 +1,110 @@
+//! All entrants on all rays of a set.
+
+use super::{Bout, Effort, Entrant, Facts, RaySet, TestRay, fight};
+use crate::Failure;
+use crate::plan::{Field, FieldJob, KnownField};
+use fairflight_media::Bounded;
+use fairflight_sources::{Seeded, derive_seed};
+use fairflight_transmittance::{Experience, Pilot};
+use rayon::prelude::*;
+
+/// What came of a contest.
+#[derive(Clone, Debug)]
+pub struct Contest {
+    /// Who took part.
+    pub entrants: Vec<Entrant>,
+    /// For each entrant its bouts, in the order of the rays.
+    pub bouts: Vec<Vec<Bout>>,
+    /// Look-ups of the pilots, per ray.
+    pub pilot_lookups: f64,
+}
+
+impl Contest {
+    /// The bouts of the entrant of this name.
+    #[must_use]
+    pub fn of(&self, name: &str) -> Option<&[Bout]> {
+        self.entrants.iter().position(|entrant| entrant.name == name).map(|i| self.bouts[i].as_slice())
+    }
+}
+
+/// What is known before each ray: of all rays before it, and before the first one of the last, whose lesson comes a round late.
+///
+/// Each ray is looked at once by a pilot with variates of its own; look-ups of pilots are not charged to estimates.
+#[must_use]
+pub fn facts(set: &RaySet, seed: u64) -> Vec<Facts> {
+    let pilots: Vec<Pilot> =
+        set.rays.par_iter().enumerate().map(|(i, ray)| pilot(ray, derive_seed(seed, i as u64))).collect();
+    let mut experience = Experience::default();
+    if let Some(last) = pilots.last() {
+        experience.observe(last);
+    }
+    pilots
+        .iter()
+        .map(|pilot| {
+            let facts = Facts { mean: set.mean, experience };
+            experience.observe(pilot);
+            facts
+        })
+        .collect()
+}
+
+/// What a pilot of the same ray tells, with variates of its own.
+#[must_use]
+pub fn facts_of(ray: &TestRay, seed: u64) -> Facts {
+    let mut experience = Experience::default();
+    experience.observe(&pilot(ray, seed));
+    Facts { mean: ray.truth.optical_thickness / ray.profile.length(), experience }
+}
+
+/// A look at one ray.
+#[must_use]
+pub fn pilot(ray: &TestRay, seed: u64) -> Pilot {
+    struct Look {
+        majorant: f64,
+        seed: u64,
+    }
+    impl FieldJob for Look {
+        type Output = Pilot;
+        fn run<F: KnownField>(self, field: &F) -> Pilot
+        where
+            for<'a> &'a F: Field,
+        {
+            let field = Bounded::new(field, self.majorant).expect("a majorant of a set is at least 0");
+            Pilot::of(&field, &mut Seeded::new(self.seed))
+        }
+    }
+    ray.profile.with(Look { majorant: ray.majorant, seed })
+}
+
+/// Lets all entrants meet all rays. `advance` is told of each bout.
+///
+/// # Errors
+/// If an entrant is not defined on a ray.
+pub fn contest(
+    set: &RaySet,
+    entrants: Vec<Entrant>,
+    effort: Effort,
+    seed: u64,
+    advance: &(dyn Fn() + Sync),
+) -> Result<Contest, Failure> {
+    let facts = facts(set, derive_seed(seed, u64::MAX));
+    let mut bouts = Vec::with_capacity(entrants.len());
+    for (e, entrant) in entrants.iter().enumerate() {
+        let seed = derive_seed(seed, e as u64);
+        let row: Result<Vec<Bout>, Failure> = set
+            .rays
+            .par_iter()
+            .zip(&facts)
+            .enumerate()
+            .map(|(r, (ray, facts))| {
+                let estimator = entrant.on(ray, facts)?;
+                let bout = fight(ray, &estimator, effort, derive_seed(seed, r as u64))?;
+                advance();
+                Ok(bout)
+            })
+            .collect();
+        bouts.push(row?);
+    }
+    let lookups: u64 = set.rays.iter().map(|ray| Pilot::lookups(ray.majorant * ray.profile.length())).sum();
+    Ok(Contest { entrants, bouts, pilot_lookups: lookups as f64 / set.rays.len().max(1) as f64 })
+}

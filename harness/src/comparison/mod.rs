@@ -1,0 +1,16 @@
+//! Estimators compared on rays: what the report on estimators and `harness advise` share.
+//!
+//! An [`Entrant`] is an estimator whose parameters follow from the ray. It meets every ray of a [`RaySet`]; a [`Bout`] is what came of it
+//! on one of them, a [`Gain`] how much cheaper it is than ratio tracking over all.
+
+mod bout;
+mod contest;
+mod entrant;
+mod gain;
+mod rays;
+
+pub use bout::{Bout, Effort, fight};
+pub use contest::{Contest, contest, facts, facts_of, pilot};
+pub use entrant::{Entrant, Facts, entrants};
+pub use gain::{Gain, Unit, gain};
+pub use rays::{RaySet, TestRay, chords};

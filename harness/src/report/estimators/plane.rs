@@ -1,0 +1,274 @@
+//! The canonical plane of georgiev-2019: six profiles over transmittance and tightness of the majorant.
+
+use crate::Failure;
+use crate::comparison::{Bout, Effort, Entrant, Facts, TestRay, entrants, facts_of, fight};
+use crate::plan::AnyProfile;
+use crate::reference::Truth;
+use crate::report::document::{Axis, Cell, Content, HeatMap, Numbers, Panel, Section, Table};
+use crate::report::run::Run;
+use crate::spec::ProfileSpec;
+use fairflight_media::Tolerance;
+use fairflight_sources::derive_seed;
+use rayon::prelude::*;
+
+/// The part of the report, for its seeds.
+const PART: u64 = 2;
+
+/// A profile: its name, and σ_t on a ray of length 1 up to a factor, the greatest value 1.
+struct Shape {
+    name: &'static str,
+    formula: &'static str,
+    /// ∫ of it.
+    integral: f64,
+}
+
+/// As in georgiev-2019, whose widths are not printed: ours are a tenth for the bump and the hole.
+const SHAPES: [Shape; 6] = [
+    Shape { name: "const", formula: "1", integral: 1.0 },
+    Shape { name: "cos", formula: "0.5 + 0.5*cos(6.283185307179586*s)", integral: 0.5 },
+    Shape { name: "gauss", formula: "exp(-50*(s - 0.5)^2)", integral: 0.250_662_683_757_567_95 },
+    Shape { name: "hole", formula: "1 - exp(-50*(s - 0.5)^2)", integral: 0.749_337_316_242_432 },
+    Shape { name: "lin_inc", formula: "s", integral: 0.5 },
+    Shape { name: "lin_dec", formula: "1 - s", integral: 0.5 },
+];
+
+/// What came of the plane.
+pub(super) struct Plane {
+    pub(super) sections: Vec<Section>,
+    /// How many cells of all are won by whom, most first.
+    pub(super) wins: Vec<(&'static str, usize)>,
+    pub(super) cells: usize,
+    pub(super) unsound: Vec<String>,
+}
+
+struct Grid {
+    transmittances: Vec<f64>,
+    tightnesses: Vec<f64>,
+}
+
+impl Grid {
+    /// Transmittances are even in −ln T towards both ends, tightnesses in their logarithm.
+    fn of(run: &Run<'_>) -> Self {
+        let (columns, rows) = run.quick_or((6, 4), (16, 10));
+        let logit = |x: f64| (x / (1.0 - x)).ln();
+        let [low, high] = [logit(0.01), logit(0.99)];
+        let along = |i: usize, n: usize| i as f64 / (n - 1) as f64;
+        Self {
+            transmittances: (0..columns)
+                .map(|i| 1.0 / (1.0 + (-(low + (high - low) * along(i, columns))).exp()))
+                .collect(),
+            tightnesses: (0..rows).map(|j| 0.05_f64.powf(1.0 - along(j, rows))).collect(),
+        }
+    }
+
+    fn points(&self) -> usize {
+        self.transmittances.len() * self.tightnesses.len()
+    }
+}
+
+/// Who meets the plane: all that need no cells.
+fn players() -> Vec<Entrant> {
+    entrants().into_iter().filter(|entrant| !entrant.needs_cells).collect()
+}
+
+pub(super) fn steps(run: &Run<'_>) -> u64 {
+    (SHAPES.len() * players().len() * Grid::of(run).points()) as u64
+}
+
+/// A point of the plane.
+fn point(shape: &Shape, transmittance: f64, tightness: f64) -> Result<TestRay, Failure> {
+    let maximum = -transmittance.ln() / shape.integral;
+    let sigma_t = format!("{maximum}*({})", shape.formula);
+    let spec = ProfileSpec::Expression { sigma_t, length: 1.0, majorant: None };
+    let profile = AnyProfile::build(&spec, &crate::plan::MediumLibrary::default())?;
+    let truth = Truth::of(&profile, Tolerance::TIGHT)?;
+    // The rounding of the formula may lie above its exact maximum.
+    Ok(TestRay { profile, truth, majorant: maximum * (1.0 + 1e-12) / tightness })
+}
+
+pub(super) fn study(run: &Run<'_>) -> Result<Plane, Failure> {
+    let grid = Grid::of(run);
+    let players = players();
+    let effort = Effort { samples: 2048, counted: 512, closed: true };
+    let points: Vec<(usize, f64, f64)> = (0..SHAPES.len())
+        .flat_map(|shape| {
+            let grid = &grid;
+            grid.tightnesses.iter().flat_map(move |&tightness| {
+                grid.transmittances.iter().map(move |&transmittance| (shape, transmittance, tightness))
+            })
+        })
+        .collect();
+    // Each point is a ray of its own, met by all: the pilot of a point teaches that point, with variates of its own.
+    let bouts: Result<Vec<Vec<Bout>>, Failure> = points
+        .par_iter()
+        .enumerate()
+        .map(|(i, &(shape, transmittance, tightness))| {
+            let ray = point(&SHAPES[shape], transmittance, tightness)?;
+            let seed = derive_seed(run.seed(PART, 0), i as u64);
+            let facts: Facts = facts_of(&ray, derive_seed(seed, u64::MAX));
+            players
+                .iter()
+                .enumerate()
+                .map(|(e, player)| {
+                    let bout = fight(&ray, &player.on(&ray, &facts)?, effort, derive_seed(seed, e as u64));
+                    run.advance();
+                    bout
+                })
+                .collect()
+        })
+        .collect();
+    let bouts = bouts?;
+    Ok(results(&grid, &players, &bouts))
+}
+
+/// Variance times look-ups, in units of T²; what no variance is told apart from.
+fn price(bout: &Bout) -> f64 {
+    bout.relative_variance.max(1e-20) * bout.lookups.max(1.0)
+}
+
+fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
+    let points = grid.points();
+    let panel = |shape: usize, of: &dyn Fn(&[Bout]) -> Option<f64>| Panel {
+        label: SHAPES[shape].name.to_owned(),
+        x: grid.transmittances.clone(),
+        y: grid.tightnesses.clone(),
+        values: bouts[shape * points..(shape + 1) * points].iter().map(|bouts| of(bouts)).collect(),
+    };
+    let panels = |of: &dyn Fn(&[Bout]) -> Option<f64>| {
+        (0..SHAPES.len()).map(|shape| panel(shape, of)).collect::<Vec<_>>()
+    };
+    let x = || Axis::linear("transmittance [1]").within(0.0, 1.0);
+    let y = || Axis::logarithmic("tightness of the majorant [1]");
+    let best =
+        |bouts: &[Bout]| (0..bouts.len()).min_by(|&a, &b| price(&bouts[a]).total_cmp(&price(&bouts[b])));
+    let mut wins: Vec<(&'static str, usize)> = players.iter().map(|player| (player.name, 0)).collect();
+    for bouts in bouts {
+        if let Some(winner) = best(bouts) {
+            wins[winner].1 += 1;
+        }
+    }
+    let winners = Content::Names {
+        names: players.iter().map(|player| player.name.to_owned()).collect(),
+        panels: (0..SHAPES.len())
+            .map(|shape| {
+                let one = panel(shape, &|_| None);
+                let values =
+                    bouts[shape * points..(shape + 1) * points].iter().map(|bouts| best(bouts)).collect();
+                Panel { label: one.label, x: one.x, y: one.y, values }
+            })
+            .collect(),
+        numbers: Some(Numbers {
+            axis: Axis::logarithmic("gain of the winner over ratio tracking [1]"),
+            isolines: vec![1.0, 10.0, 1e2, 1e4, 1e6, 1e8],
+            panels: (0..SHAPES.len())
+                .map(|shape| {
+                    panel(shape, &|bouts| best(bouts).map(|winner| price(&bouts[0]) / price(&bouts[winner])))
+                        .values
+                })
+                .collect(),
+        }),
+    };
+    wins.sort_by_key(|&(_, cells)| std::cmp::Reverse(cells));
+    let mut winner_map =
+        HeatMap::new("plane-winners", "Who wins the canonical plane, per look-up", x(), y(), winners);
+    winner_map.caption = format!(
+        "The estimator with the least variance times look-ups at each point, and how much it gains over ratio tracking (lines). Tightness is \
+         the greatest extinction over the majorant. {} of {} points are won by {}.",
+        wins[0].1,
+        bouts.len(),
+        wins[0].0
+    );
+    let mut overview = Section::new("plane", "The canonical plane: who wins");
+    overview.text = vec![
+        "georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
+         the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know a pilot of the same ray, \
+         from variates of its own."
+            .to_owned(),
+        "Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned(),
+    ];
+    overview.heat_maps = vec![winner_map];
+    let (table, unsound) = summary(players, bouts);
+    overview.tables = vec![table];
+
+    let mut prices =
+        Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator");
+    let mut quantities =
+        Section::new("plane-quantities", "The canonical plane: variance and look-ups of each estimator");
+    for (e, player) in players.iter().enumerate() {
+        let id = player.name.to_lowercase().replace(", ", "-").replace([' ', ','], "-");
+        let map = |quantity: &str, title: &str, isolines: Vec<f64>, of: &dyn Fn(&Bout) -> f64| {
+            let panels = panels(&|bouts| Some(of(&bouts[e])).filter(|value| *value > 0.0));
+            let content = Content::Values { colours: Axis::logarithmic(title), isolines, panels };
+            HeatMap::new(
+                &format!("plane-{quantity}-{id}"),
+                &format!("{}: {title}", player.name),
+                x(),
+                y(),
+                content,
+            )
+        };
+        let decades = |from: i32, to: i32| (from..=to).map(|decade| 10_f64.powi(decade)).collect::<Vec<_>>();
+        prices.heat_maps.push(map("price", "Var · look-ups/T² [1]", decades(-12, 6), &price));
+        quantities
+            .heat_maps
+            .push(map("variance", "Var/T² [1]", decades(-14, 6), &|bout| bout.relative_variance));
+        quantities.heat_maps.push(map(
+            "lookups",
+            "look-ups [1]",
+            vec![1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0],
+            &|bout| bout.lookups,
+        ));
+    }
+    Plane { sections: vec![overview, prices, quantities], wins, cells: bouts.len(), unsound }
+}
+
+/// Each estimator over the whole plane: points won, the middle of its gains, and whether its means are right.
+fn summary(players: &[Entrant], bouts: &[Vec<Bout>]) -> (Table, Vec<String>) {
+    let mut table = Table::new(
+        "plane-summary",
+        "The plane as a whole",
+        "Gains per look-up over ratio tracking at the same point; the mean over all points whose law is mild enough, with its standard error.",
+        &[
+            ("estimator", ""),
+            ("points won", "1"),
+            ("least gain", "1"),
+            ("median gain", "1"),
+            ("greatest gain", "1"),
+            ("z of all means", "1"),
+            ("points in z", "1"),
+        ],
+    );
+    let mut unsound = Vec::new();
+    for (e, player) in players.iter().enumerate() {
+        let mut gains: Vec<f64> = bouts.iter().map(|bouts| price(&bouts[0]) / price(&bouts[e])).collect();
+        gains.sort_unstable_by(f64::total_cmp);
+        let won =
+            bouts.iter().filter(|bouts| bouts.iter().all(|other| price(other) >= price(&bouts[e]))).count();
+        let scores: Vec<f64> = bouts
+            .iter()
+            .map(|bouts| &bouts[e])
+            .filter(|bout| {
+                bout.mean_error > 1e-13
+                    && bout.kurtosis.is_some_and(|kurtosis| kurtosis < 0.02 * bout.samples as f64)
+            })
+            .map(|bout| (bout.relative_mean - 1.0) / bout.mean_error)
+            .collect();
+        let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
+        if z.abs() > 6.0 {
+            unsound.push(format!(
+                "{} on the canonical plane: means are off by {z:.1} standard errors",
+                player.name
+            ));
+        }
+        table.rows.push(vec![
+            Cell::text(player.name),
+            Cell::Count(won as u64),
+            Cell::Number(gains[0]),
+            Cell::Number(gains[gains.len() / 2]),
+            Cell::Number(gains[gains.len() - 1]),
+            Cell::maybe((!scores.is_empty()).then_some(z)),
+            Cell::Count(scores.len() as u64),
+        ]);
+    }
+    (table, unsound)
+}

@@ -1,0 +1,127 @@
+//! The rays that estimators are compared on.
+
+use crate::Failure;
+use crate::comparison::{Effort, RaySet, chords};
+use crate::plan::AnyProfile;
+use crate::report::document::Volume;
+use crate::report::run::Run;
+use crate::spec::{MediumKind, MediumSpec};
+use fairflight_media::{Bounds, PerlinParameters, PiecewiseConstant, Tolerance};
+use fairflight_sources::{Seeded, UniformSource};
+use glam::DVec3;
+
+/// Rays of a set.
+const RAYS: usize = 60;
+/// Rays are kept from this share of the medium's extent on.
+const LEAST: f64 = 0.2;
+/// The part of the report, for its seeds.
+const PART: u64 = 10;
+
+/// A set with how thoroughly it is measured.
+pub(super) struct Arena {
+    /// Names files.
+    pub(super) id: &'static str,
+    pub(super) set: RaySet,
+    pub(super) effort: Effort,
+    /// What it is, in words.
+    pub(super) description: String,
+}
+
+/// The sets of the report: smooth, rough, Perlin, and a volume if one is given.
+pub(super) fn arenas(run: &Run<'_>) -> Result<Vec<Arena>, Failure> {
+    let mut arenas = vec![smooth(run)?, rough(run)?, perlin(run)?];
+    if let Some(volume) = &run.options.vdb {
+        arenas.push(vdb(run, volume)?);
+    }
+    Ok(arenas)
+}
+
+fn rays(run: &Run<'_>) -> usize {
+    run.quick_or(12, RAYS)
+}
+
+fn effort(run: &Run<'_>, samples: u64, closed: bool) -> Effort {
+    let samples = run.quick_or(samples / 4, samples).max(1024);
+    Effort { samples, counted: samples.min(2048), closed }
+}
+
+fn smooth(run: &Run<'_>) -> Result<Arena, Failure> {
+    let spec = MediumSpec { kind: MediumKind::AnalyticCosine { scale: 1.0 }, bounds: None };
+    let (medium, bounds) = run.media.build(&spec, "medium")?;
+    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 0))?;
+    Ok(Arena {
+        id: "smooth",
+        set: RaySet::of("smooth", profiles, 1.0, Tolerance::to(1e-11))?,
+        effort: effort(run, 16_384, true),
+        description: "Smooth: random chords of szirmay-kalos-2017 eq. 21, at least 4 long, majorant 1."
+            .to_owned(),
+    })
+}
+
+/// White noise: 400 log-normal cells along a ray of length 20, no greater than the majorant 1, of the optical thickness of the seed ray.
+pub(super) fn rough_profile(source: &mut Seeded) -> Result<PiecewiseConstant, Failure> {
+    const CELLS: usize = 400;
+    const LENGTH: f64 = 20.0;
+    const THICKNESS: f64 = 3.415_684;
+    const DEVIATION: f64 = 1.3;
+    let mut normal = || {
+        // Box and Muller 1958.
+        let radius = (2.0 * source.next_exponential()).sqrt();
+        radius * (std::f64::consts::TAU * source.next_uniform()).cos()
+    };
+    let heights: Vec<f64> = (0..CELLS).map(|_| (DEVIATION * normal()).exp().min(9.0)).collect();
+    let spacing = LENGTH / CELLS as f64;
+    let scale = THICKNESS / (heights.iter().sum::<f64>() * spacing);
+    let edges = (0..=CELLS).map(|i| if i == CELLS { LENGTH } else { i as f64 * spacing }).collect();
+    let sigma_t = heights.iter().map(|height| (height * scale).min(1.0)).collect();
+    PiecewiseConstant::new(edges, sigma_t)
+        .map_err(|error| Failure::refused(format!("rough profile: {error}")))
+}
+
+fn rough(run: &Run<'_>) -> Result<Arena, Failure> {
+    let mut source = Seeded::new(run.seed(PART, 1));
+    let profiles: Result<Vec<AnyProfile>, Failure> =
+        (0..rays(run)).map(|_| Ok(AnyProfile::PiecewiseConstant(rough_profile(&mut source)?))).collect();
+    Ok(Arena {
+        id: "rough",
+        set: RaySet::of("rough", profiles?, 1.0, Tolerance::to(1e-11))?,
+        effort: effort(run, 16_384, true),
+        description: "Rough: 400 cells of log-normal noise along each ray of length 20, optical thickness about 3.4, majorant 1: white \
+                      noise below the spacing of any comb, the hardest case for it."
+            .to_owned(),
+    })
+}
+
+fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
+    let parameters = PerlinParameters { offset: 0.25, scale: 0.75, ..PerlinParameters::default() };
+    let radius = 10.0;
+    let bounds = Bounds::sphere(DVec3::ZERO, radius)
+        .map_err(|error| Failure::refused(format!("medium.bounds: {error}")))?;
+    let spec = MediumSpec { kind: MediumKind::Perlin(parameters), bounds: Some(bounds) };
+    let (medium, bounds) = run.media.build(&spec, "medium")?;
+    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 2))?;
+    Ok(Arena {
+        id: "perlin",
+        set: RaySet::of("Perlin", profiles, 1.0, Tolerance::to(1e-7))?,
+        effort: effort(run, 4096, false),
+        description: "Perlin: random chords of a sphere of radius 10 in the noise of twelve octaves of the standard report, majorant 1."
+            .to_owned(),
+    })
+}
+
+fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
+    let kind = MediumKind::Vdb { file: volume.file.clone(), grid: volume.grid.clone(), scale: volume.scale };
+    let (medium, bounds) = run.media.build(&MediumSpec { kind, bounds: None }, "medium")?;
+    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 3))?;
+    let majorant =
+        medium.upper_bound().ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;
+    Ok(Arena {
+        id: "vdb",
+        set: RaySet::of("vdb", profiles, majorant, Tolerance::to(1e-11))?,
+        effort: effort(run, 8192, false),
+        description: format!(
+            "Volume: random chords of the box of {}, majorant {majorant:.4}, the greatest voxel.",
+            volume.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+        ),
+    })
+}
