@@ -160,7 +160,6 @@ fn the_cumulative_version_on_the_seed_ray() {
     // The order ends where terms fall below that of order 0: its standard deviation is of the size of √39.
     let lookups = field.lookups() as f64 / f64::from(n);
     assert!((lookups - 39.0).abs() < 5.0 * 39.0_f64.sqrt() / f64::from(n).sqrt() + 0.05, "{lookups}");
-    println!("{variance} ± {error}, {lookups}");
 }
 
 #[test]
