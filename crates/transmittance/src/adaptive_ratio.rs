@@ -100,9 +100,9 @@ impl<F: Extinction> ClosedForm<F> for AdaptiveRatio {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::agrees;
+    use crate::test_support::{agrees, mean, seed_ray};
     use approx::assert_relative_eq;
-    use fairflight_media::{Bounded, Constant, PiecewiseConstant};
+    use fairflight_media::{Bounded, Constant, Counted, OpticalThickness, PiecewiseConstant};
     use fairflight_sources::{Scripted, Seeded};
 
     /// The variate whose exponential is `depth`.
@@ -141,6 +141,22 @@ mod tests {
         let signed = PiecewiseConstant::new(vec![0.0, 0.5, 1.5], vec![1.3, -0.4]).unwrap();
         let field = Bounded::new(signed, 1.0).unwrap();
         agrees(&field, &AdaptiveRatio::new(0.5).unwrap(), 200_000, &mut Seeded::new(4));
+    }
+
+    /// The second moment and the look-ups obey Volterra equations like (2); solved on a grid of 1000 cells they give 6.11 ± 0.01
+    /// and 13.90 ± 0.01 on this ray.
+    #[test]
+    fn the_figures_of_the_seed_ray() {
+        let (field, estimator) = (Counted::new(seed_ray()), AdaptiveRatio::new(0.1).unwrap());
+        let transmittance = (-field.optical_thickness(0.0, 20.0)).exp();
+        let mut source = Seeded::new(41);
+        let n = 200_000;
+        let (variance, error) =
+            mean(n, || (estimator.estimate(&field, &mut source) / transmittance - 1.0).powi(2));
+        assert!((variance - 6.11).abs() < 5.0 * error + 0.01, "{variance}, standard error {error}");
+        let lookups = field.lookups() as f64 / f64::from(n);
+        // The standard deviation of their number is below 4.5, that of ratio tracking's 20.
+        assert!((lookups - 13.9).abs() < 5.0 * 4.5 / f64::from(n).sqrt() + 0.01, "{lookups}");
     }
 
     #[test]

@@ -173,14 +173,6 @@ where
             |s, sigma_t| [at(s, sigma_t).map_or(0.0, |(sampling, t)| sampling * (1.0 - t.probability))],
             |s, _, [ended]| [self.sampling.sigma_t(s) * (-ended).exp()],
         );
-        let law = ProductLaw::new(collisions.value);
-        Theory {
-            relative_mean: 1.0,
-            relative_central: law.relative_central(),
-            log_relative_variance: law.log_relative_variance(),
-            // d Var / Var = dJ_2 exp(J_2) / (exp(J_2) − 1)
-            relative_variance_error: collisions.error[0] / -(-collisions.value[0]).exp_m1(),
-            lookups: lookups.value[0],
-        }
+        ProductLaw::new(collisions.value).theory(collisions.error[0], lookups.value[0])
     }
 }
