@@ -21,14 +21,16 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
     let clock = Instant::now();
     let run = Run::new(options, environment, 1);
     let arenas = sets::arenas(&run)?;
-    run.expect(
-        seed_ray::steps()
-            + cells::steps()
-            + convergence::steps()
-            + flights::steps()
-            + plane::steps(&run)
-            + arenas.iter().map(rays::steps).sum::<u64>(),
-    );
+    let parts = [
+        seed_ray::steps(),
+        plane::steps(&run),
+        cells::steps(),
+        convergence::steps(),
+        flights::steps(),
+        spectral::steps(),
+        variates::steps(),
+    ];
+    run.expect(parts.iter().sum::<u64>() + arenas.iter().map(rays::steps).sum::<u64>());
     let seed = seed_ray::study(&run)?;
     let plane = plane::study(&run)?;
     let mut standings = Vec::new();

@@ -11,6 +11,7 @@ use fairflight_freeflight::spectral::{
 };
 use fairflight_media::{
     AnalyticCosine, Constant, Extinction, OpticalThickness, Ray, Scaled, SpectralExtinction,
+    SpectralOpticalThickness,
 };
 use fairflight_sources::{Seeded, derive_seed};
 use rayon::prelude::*;
@@ -56,6 +57,12 @@ impl<F: SpectralExtinction<N>, const N: usize> SpectralExtinction<N> for Counted
 
     fn length(&self) -> f64 {
         self.field.length()
+    }
+}
+
+impl<F: SpectralOpticalThickness<N>, const N: usize> SpectralOpticalThickness<N> for CountedSpectrum<'_, F> {
+    fn optical_thickness(&self, from: f64, to: f64) -> [f64; N] {
+        self.field.optical_thickness(from, to)
     }
 }
 
@@ -123,7 +130,7 @@ fn all<F, const N: usize>(
     flights: (u64, u64),
 ) -> Result<Vec<(&'static str, Scored<N>)>, Failure>
 where
-    F: SpectralExtinction<N> + Sync,
+    F: SpectralOpticalThickness<N> + Sync,
 {
     let constant = |sigma: f64| {
         Constant::new(sigma, field.length()).map_err(|error| Failure::refused(format!("spectral: {error}")))
