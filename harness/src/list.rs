@@ -22,6 +22,22 @@ estimators     woodcock          majorant                   raab-2008 algorithm 
                single_particle   version, albedo, sigma_samp, [control]
                line_integral     majorant, splits           raab-2008 algorithm 2
                ray_marching      steps, jitter              a biased baseline
+               next_flight       majorant, version          delta, ratio, unidirectional, bidirectional; georgiev-2019
+               p_series          version, [pivot]           cmf, cumulative, ratio, next_flight; georgiev-2019
+               generalised_poisson pivot, rate              fearnhead-2008
+               unbiased_ray_marching [teeth] or [pivot], [endpoint_matching], [comb], [order], [roulette], [segments]
+                                                            kettunen-2021; combs uniform, periodised, bernoulli (order 2, 3)
+               telescoping       teeth, level_ratio, [endpoint_matching]
+                                                            misso-2022
+               jittered_ratio    majorant or cells, epsilon values in [0, 1]; ours
+               residual_cells    cells, [rate]              residual ratio tracking between bounds
+               adaptive_ratio    majorant, floor            misso-2023
+               regular                                      the closed form, where there is one
+               hybrid            [majorant]                 chooses by pilots; ours
+               jackknife         teeth                      peters-2025, biased
+               naive             teeth                      the exponential of one comb, biased
+               progressive_majorant start                   misso-2023, biased and consistent
+cells          a number of equal ones along the ray, or edges, minorants, majorants
 versions       terminating, non_terminating, adaptive
 sigma_samp     a number, or an object of edges and values; of walks in a scene a number, or cells, factor and floor
 controls       none

@@ -57,6 +57,7 @@ media!(
     expression,
     series,
     cells,
+    hybrid,
     freeflight,
     spectral,
     points,

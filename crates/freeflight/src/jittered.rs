@@ -231,17 +231,17 @@ mod tests {
         let raw = sampler.lookups(&mut RayQuadrature::new(&ray, &[]), Tolerance::TIGHT).unwrap();
         // The expectation as it stands in the documentation, by a midpoint sum.
         let n = 200_000;
-        let (mut tau, mut reached, mut virtually) = (0.0, 0.0, 0.0);
+        let (mut tau, mut reached, mut virtually) = (0.0_f64, 0.0, 0.0);
         let points: Vec<f64> =
             (0..n).map(|i| ray.sigma_t(20.0 * (f64::from(i) + 0.5) / f64::from(n))).collect();
         let step = 20.0 / f64::from(n);
         for stratum in points.chunks(n as usize / 40) {
-            reached += (-tau as f64).exp();
+            reached += (-tau).exp();
             let mut rest: f64 = stratum.iter().sum::<f64>() * step;
             for sigma_t in stratum {
                 let half = 0.5 * sigma_t * step;
                 (tau, rest) = (tau + half, rest - half);
-                virtually += step * (-tau as f64).exp() * rest;
+                virtually += step * (-tau).exp() * rest;
                 (tau, rest) = (tau + half, rest - half);
             }
         }

@@ -13,34 +13,46 @@ pub enum Kind {
     LineIntegral,
     /// The biased baseline.
     RayMarching,
-    /// Next flight, after delta or ratio tracking.
+    /// Next flight, after delta or ratio tracking, or combined with it.
     NextFlight,
-    /// Ratio tracking and next flight combined over one walk.
-    Unidirectional,
-    /// The same over a walk from either end.
-    Bidirectional,
     /// The power series about a pivot.
     PSeries,
     /// A single term of the power series.
     GeneralisedPoisson,
     /// Ratio tracking whose rate follows what it found last.
     AdaptiveRatio,
+    /// U-statistics of combs.
+    UnbiasedRayMarching,
+    /// Debiasing by levels of combs.
+    Telescoping,
+    /// Strata with a random alternating series each.
+    JitteredRatio,
+    /// Residual ratio tracking between bounds in cells.
+    ResidualCells,
+    /// Chooses between some of them.
+    Hybrid,
+    /// Two combs: a biased baseline.
+    Jackknife,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 15] = [
         Self::Woodcock,
         Self::DoubleParticle,
         Self::SingleParticle,
         Self::LineIntegral,
         Self::RayMarching,
         Self::NextFlight,
-        Self::Unidirectional,
-        Self::Bidirectional,
         Self::PSeries,
         Self::GeneralisedPoisson,
         Self::AdaptiveRatio,
+        Self::UnbiasedRayMarching,
+        Self::Telescoping,
+        Self::JitteredRatio,
+        Self::ResidualCells,
+        Self::Hybrid,
+        Self::Jackknife,
     ];
 
     /// The name in an experiment.
@@ -53,11 +65,15 @@ impl Kind {
             Self::LineIntegral => "line_integral",
             Self::RayMarching => "ray_marching",
             Self::NextFlight => "next_flight",
-            Self::Unidirectional => "unidirectional",
-            Self::Bidirectional => "bidirectional",
             Self::PSeries => "p_series",
             Self::GeneralisedPoisson => "generalised_poisson",
             Self::AdaptiveRatio => "adaptive_ratio",
+            Self::UnbiasedRayMarching => "unbiased_ray_marching",
+            Self::Telescoping => "telescoping",
+            Self::JitteredRatio => "jittered_ratio",
+            Self::ResidualCells => "residual_cells",
+            Self::Hybrid => "hybrid",
+            Self::Jackknife => "jackknife",
         }
     }
 
@@ -85,18 +101,24 @@ impl Kind {
                 Self::SingleParticle => &["single particle", "terminating", "adaptive"],
                 Self::LineIntegral => &["line integral"],
                 Self::RayMarching => &["ray marching"],
-                Self::NextFlight => &["next flight"],
-                Self::Unidirectional => &["unidirectional"],
-                Self::Bidirectional => &["bidirectional"],
+                Self::NextFlight => &["next flight", "unidirectional", "bidirectional"],
                 Self::PSeries => &["p series"],
                 Self::GeneralisedPoisson => &["generalised poisson"],
                 Self::AdaptiveRatio => &["adaptive ratio"],
+                Self::UnbiasedRayMarching => &["comb", "unbiased ray marching"],
+                Self::Telescoping => &["telescoping"],
+                Self::JitteredRatio => &["jittered ratio"],
+                Self::ResidualCells => &["residual cells"],
+                Self::Hybrid => &["hybrid"],
+                Self::Jackknife => &["jackknife"],
             }
         };
         // What another name begins or ends with.
         let other = |kind: Self| match kind {
             Self::SingleParticle => words.contains("adaptive ratio"),
             Self::NextFlight => words.contains("p series"),
+            Self::DoubleParticle => words.contains("jittered ratio") || words.contains("residual cells"),
+            Self::RayMarching => words.contains("unbiased ray marching"),
             _ => false,
         };
         // A version of the single particle model is one also "below the extinction".
@@ -121,6 +143,10 @@ mod tests {
         assert_eq!(Kind::named_in("woodcock, line integral"), [Kind::Woodcock, Kind::LineIntegral]);
         assert_eq!(Kind::named_in("adaptive ratio 0.1"), [Kind::AdaptiveRatio]);
         assert_eq!(Kind::named_in("p_series_next_flight"), [Kind::PSeries]);
+        assert_eq!(Kind::named_in("comb_bernoulli_2"), [Kind::UnbiasedRayMarching]);
+        assert_eq!(Kind::named_in("jittered ratio tracking"), [Kind::JitteredRatio]);
+        assert_eq!(Kind::named_in("residual_cells_rate_2"), [Kind::ResidualCells]);
+        assert_eq!(Kind::named_in("unidirectional"), [Kind::NextFlight]);
         assert_eq!(Kind::named_in("every sampler").len(), Kind::ALL.len());
         assert!(Kind::named_in("clipped ray").is_empty());
     }

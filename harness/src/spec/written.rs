@@ -34,7 +34,7 @@ impl EstimatorSpec {
                     Version::NonTerminating => "non_terminating",
                     Version::Adaptive => "adaptive",
                 },
-                "albedo": albedo.value(),
+                "albedo": albedo.get(),
                 "sigma_samp": sampling.written(),
                 "control": control.written(),
             }),

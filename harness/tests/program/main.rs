@@ -1,5 +1,6 @@
 //! The program, driven as a user would: arguments and streams in, exit code, streams and files out.
 
+mod beyond;
 mod common;
 mod estimate;
 #[cfg(unix)]

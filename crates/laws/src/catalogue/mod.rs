@@ -5,6 +5,7 @@ mod combs;
 mod estimators;
 mod exact;
 mod freeflight;
+mod hybrid;
 mod media;
 pub(crate) mod paths;
 mod phase;
@@ -62,7 +63,7 @@ pub enum Effort {
 
 /// A named check.
 pub struct Check {
-    /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`,
+    /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`, `hybrid/medium/estimator`,
     /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
     /// `phase/name`, `twin/name`, `hard/number name`.
     pub id: String,
@@ -150,6 +151,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(series::series());
     checks.extend(combs::combs());
     checks.extend(cells::in_cells());
+    checks.extend(hybrid::hybrids());
     checks.extend(freeflight::free_flights());
     checks.extend(spectral::spectral_flights());
     checks.extend(points::point_sets());

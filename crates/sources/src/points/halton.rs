@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn bases_are_the_first_primes() {
-        let is_prime = |n: u32| (2..n).all(|d| n % d != 0);
+        let is_prime = |n: u32| (2..n).all(|d| !n.is_multiple_of(d));
         let primes: Vec<u32> = (2..=311).filter(|&n| is_prime(n)).collect();
         assert_eq!(PRIMES.to_vec(), primes);
         assert!(matches!(Halton::new(65, 1), Err(PointSetError::TooManyDimensions { most: 64, found: 65 })));

@@ -223,7 +223,7 @@ fn theories<M: MediumBreakpoints>(ray: &Ray<&M>, cells: &[BoundCell]) -> [Theory
     let residual = ResidualCells::new(1.0).expect("a rate of 1 is positive");
     let jittered = JitteredRatioInCells::new(0.25).expect("0.25 is positive and at most 1");
     let whole = [BoundCell { to: ray.length(), minorant: 0.0, majorant: ray.majorant() }];
-    let mut of = |estimator: &dyn Fn(&mut Fenced<'_, M>) -> Theory, cells| {
+    let of = |estimator: &dyn Fn(&mut Fenced<'_, M>) -> Theory, cells| {
         let field = InCells::new(ray, cells).expect("a grid's cells cover the ray");
         estimator(&mut quadrature.with_field(field))
     };
@@ -237,14 +237,10 @@ fn theories<M: MediumBreakpoints>(ray: &Ray<&M>, cells: &[BoundCell]) -> [Theory
 /// A ray in cells, with its quadrature.
 type Fenced<'a, M> = RayQuadrature<InCells<&'a Ray<&'a M>, &'a [BoundCell]>>;
 
-/// The corners of the bounds in the medium's own coordinates.
+/// The corners of the bounds in the medium's own coordinates, whose axes are those of the world.
 fn corners<M: Medium>(medium: &M, bounds: &Bounds) -> (DVec3, DVec3) {
     let local = |point| medium.local(Line { origin: point, direction: DVec3::X }).origin;
-    bounds
-        .corners()
-        .into_iter()
-        .map(local)
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        })
+    let (min, max) = bounds.corners();
+    let (min, max) = (local(min), local(max));
+    (min.min(max), min.max(max))
 }

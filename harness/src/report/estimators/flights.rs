@@ -1,11 +1,11 @@
 //! The companion sampler of jittered ratio tracking against the exact law of distances, a hundred million times.
 
 use crate::Failure;
-use crate::plan::{AnyProfile, Field, FieldJob, KnownField};
+use crate::plan::AnyProfile;
 use crate::report::document::{Cell, Section, Table};
 use crate::report::run::Run;
 use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock};
-use fairflight_media::{AnalyticCosine, Bounded, Counted, Extinction, OpticalThickness, Ray};
+use fairflight_media::{AnalyticCosine, Bounded, Constant, Counted, Extinction, OpticalThickness, Ray};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::chi_square;
 use rayon::prelude::*;
@@ -63,7 +63,10 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Flights, Fail
                     .map_err(|error| Failure::refused(format!("epsilon: {error}")))?;
                 sample(ray, &sampler, flights, seed)
             }
-            None => sample(ray, &Woodcock, flights, seed),
+            None => {
+                let majorant = Constant::new(1.0, ray.length()).expect("1 is finite, and a ray has a length");
+                sample(ray, &Woodcock::new(majorant), flights, seed)
+            }
         };
         let collides = 1.0 - (-ray.optical_thickness(0.0, ray.length())).exp();
         let mut probabilities = vec![collides / CLASSES as f64; CLASSES];

@@ -2,11 +2,14 @@
 
 mod cells;
 mod convergence;
+mod findings;
 mod flights;
 mod plane;
 mod rays;
 mod seed_ray;
 mod sets;
+mod spectral;
+mod variates;
 
 use crate::report::document::{Document, Options};
 use crate::report::run::Run;
@@ -18,14 +21,16 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
     let clock = Instant::now();
     let run = Run::new(options, environment, 1);
     let arenas = sets::arenas(&run)?;
-    run.expect(
-        seed_ray::steps()
-            + cells::steps()
-            + convergence::steps()
-            + flights::steps()
-            + plane::steps(&run)
-            + arenas.iter().map(rays::steps).sum::<u64>(),
-    );
+    let parts = [
+        seed_ray::steps(),
+        plane::steps(&run),
+        cells::steps(),
+        convergence::steps(),
+        flights::steps(),
+        spectral::steps(),
+        variates::steps(),
+    ];
+    run.expect(parts.iter().sum::<u64>() + arenas.iter().map(rays::steps).sum::<u64>());
     let seed = seed_ray::study(&run)?;
     let plane = plane::study(&run)?;
     let mut standings = Vec::new();
@@ -35,6 +40,8 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
     let convergence = convergence::study(&run)?;
     let flights = flights::study(&run, &seed_ray::ray(&run)?.profile)?;
     let cells = cells::study(&run)?;
+    let spectral = spectral::study(&run)?;
+    let variates = variates::study(&run)?;
     run.finish();
     let mut document = Document::new(
         "estimators",
@@ -42,14 +49,23 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
         options,
         environment.provenance(options.seed),
     );
-    document.unsound = seed.unsound.into_iter().chain(plane.unsound).chain(flights.unsound).collect();
+    document.summary = findings::summary(&seed, &plane, &standings);
+    document.claims = findings::goals(&standings);
+    document.unsound = seed
+        .unsound
+        .into_iter()
+        .chain(plane.unsound)
+        .chain(flights.unsound)
+        .chain(spectral.unsound)
+        .chain(variates.unsound)
+        .collect();
     document
         .unsound
         .extend(standings.iter().flat_map(|standings| &standings.rows).filter_map(|row| row.unsound.clone()));
     document.sections = plane.sections;
     document.sections.insert(1, seed.section);
     document.sections.extend(standings.into_iter().map(|standings| standings.section));
-    document.sections.extend([cells, convergence, flights.section]);
+    document.sections.extend([convergence, cells, flights.section, variates.section, spectral.section]);
     document.seconds = clock.elapsed().as_secs_f64();
     Ok(document)
 }

@@ -1,0 +1,134 @@
+//! What the report came to, in words made of its numbers.
+
+use super::plane::Plane;
+use super::rays::{Standing, Standings};
+use super::seed_ray::SeedRay;
+use crate::report::result::{Claim, ClaimVerdict};
+
+/// The goal for the worst ray of every set, and for the geometric mean on smooth ones.
+const WORST: f64 = 2.4;
+const SMOOTH: f64 = 1e4;
+/// What the hybrid may lose against the best published estimator.
+const SHARE: f64 = 0.9;
+
+pub(super) fn summary(seed: &SeedRay, plane: &Plane, standings: &[Standings]) -> Vec<String> {
+    let mut summary = vec![format!(
+        "{} of {} variances of an earlier numerical study on the seed ray are reproduced within their error.",
+        seed.reproduced, seed.compared
+    )];
+    let winners: Vec<String> = plane
+        .wins
+        .iter()
+        .filter(|(_, points)| *points > 0)
+        .take(4)
+        .map(|(name, points)| format!("{name} ({points})"))
+        .collect();
+    summary.push(format!(
+        "On the canonical plane of {} points the winners per look-up are {}.",
+        plane.cells,
+        winners.join(", ")
+    ));
+    for standings in standings {
+        let best_of =
+            |of: &dyn Fn(&Standing) -> f64| standings.rows.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
+        if let (Some(hybrid), Some(published), Some(fastest)) =
+            (standings.of("hybrid"), standings.best_published(), best_of(&|row| row.per_second.mean))
+        {
+            summary.push(format!(
+                "{} rays: the hybrid gains {} over ratio tracking per look-up (worst ray {}), at {} look-ups; the best published estimator, {}, {} \
+                 (worst {}), at {}. Per second the best is {}, {}.",
+                capital(&standings.set),
+                short(hybrid.per_lookup.mean),
+                short(hybrid.per_lookup.worst),
+                short(hybrid.lookups),
+                published.name,
+                short(published.per_lookup.mean),
+                short(published.per_lookup.worst),
+                short(published.lookups),
+                fastest.name,
+                short(fastest.per_second.mean),
+            ));
+        }
+    }
+    summary
+}
+
+/// The goals of the hybrid as lines of the ledger.
+pub(super) fn goals(standings: &[Standings]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    let hybrids = || standings.iter().filter_map(|standings| Some((standings, standings.of("hybrid")?)));
+    let claim = |id: &str, claim: String, measured: Vec<String>, holds: bool, comment: &str| Claim {
+        id: id.to_owned(),
+        claim,
+        source: "goal of this project".to_owned(),
+        measured: measured.join("; "),
+        verdict: if holds { ClaimVerdict::Holds } else { ClaimVerdict::DoesNotHold },
+        comment: comment.to_owned(),
+    };
+    claims.push(claim(
+        "H1",
+        format!("the hybrid has at least {WORST} times the efficiency of ratio tracking per look-up on the worst ray of every set"),
+        hybrids().map(|(set, row)| format!("{} {}", set.set, short(row.per_lookup.worst))).collect(),
+        hybrids().all(|(_, row)| row.per_lookup.worst >= WORST),
+        "on the rays of this report",
+    ));
+    claims.push(claim(
+        "H2",
+        "the hybrid gains at least 1e4 in the geometric mean on smooth rays".to_owned(),
+        hybrids()
+            .filter(|(set, _)| set.id == "smooth")
+            .map(|(_, row)| {
+                format!("{} [{}, {}]", short(row.per_lookup.mean), short(row.per_lookup.interval[0]), short(row.per_lookup.interval[1]))
+            })
+            .collect(),
+        hybrids().filter(|(set, _)| set.id == "smooth").all(|(_, row)| row.per_lookup.mean >= SMOOTH),
+        "finer combs gain without end on smooth rays: the number depends on how many look-ups an estimate may cost",
+    ));
+    let against = |name: &str| {
+        let rows = || standings.iter().filter_map(|set| Some((set, set.of(name)?, set.best_published()?)));
+        let measured: Vec<String> = rows()
+            .map(|(set, hybrid, best)| {
+                format!(
+                    "{} {} ({})",
+                    set.set,
+                    short(hybrid.per_lookup.mean / best.per_lookup.mean),
+                    best.name
+                )
+            })
+            .collect();
+        let holds = rows().all(|(_, hybrid, best)| hybrid.per_lookup.mean >= SHARE * best.per_lookup.mean);
+        (measured, holds)
+    };
+    let (measured, holds) = against("hybrid");
+    claims.push(claim(
+        "H3",
+        "the hybrid is not below the geometric mean of any published estimator by more than 10 % on any set"
+            .to_owned(),
+        measured,
+        holds,
+        "ratio to the best published one, which is named",
+    ));
+    let (measured, holds) = against("hybrid, frugal");
+    claims.push(claim(
+        "H4",
+        "nor is it with no more than two look-ups per unit of the majorant's optical thickness".to_owned(),
+        measured,
+        holds,
+        "ratio to the best published one, whatever that costs",
+    ));
+    claims
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// Three digits.
+fn short(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
+        format!("{value:.2e}")
+    } else {
+        format!("{value:.3}")
+    }
+}
