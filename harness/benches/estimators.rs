@@ -8,7 +8,8 @@ use fairflight_media::{
 };
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::{
-    Comb, CombShape, JitteredRatio, NextFlight, NextFlightVersion, Roulette, TransmittanceEstimator, UnbiasedRayMarching,
+    Comb, CombShape, JitteredRatio, NextFlight, NextFlightVersion, Roulette, TransmittanceEstimator,
+    UnbiasedRayMarching,
 };
 use glam::DVec3;
 use std::hint::black_box;
@@ -74,7 +75,9 @@ fn bench<E>(
     let lookups = counted.lookups();
     let mut group = criterion.benchmark_group("estimators");
     group.sample_size(20).throughput(Throughput::Elements(lookups));
-    group.bench_function(BenchmarkId::new("constant", name), |b| b.iter(|| estimates(&free, estimator, ESTIMATES)));
+    group.bench_function(BenchmarkId::new("constant", name), |b| {
+        b.iter(|| estimates(&free, estimator, ESTIMATES))
+    });
     group.finish();
 
     let noise = || {
@@ -84,10 +87,8 @@ fn bench<E>(
     let [own, noise] = in_turn(|| estimates(&free, estimator, ESTIMATES), noise);
     let (own, noise) = (own / lookups as f64, noise / (lookups / 16) as f64);
     let field = Bounded::new(eq21, 1.0).expect("1 is a majorant");
-    let [pointers, direct] = in_turn(
-        || behind_pointers(eq21, estimator, ESTIMATES),
-        || estimates(&field, estimator, ESTIMATES),
-    );
+    let [pointers, direct] =
+        in_turn(|| behind_pointers(eq21, estimator, ESTIMATES), || estimates(&field, estimator, ESTIMATES));
     println!(
         "{name}: {:.1} ns a look-up of its own, {:.3} of a Perlin look-up ({:.0} ns); behind pointers / direct on eq. 21 = {:.2}",
         1e9 * own,
@@ -107,15 +108,36 @@ fn main() {
     let eq21 = Ray::new(&cosine, &clip(DVec3::ZERO, AnalyticCosine::default_bounds()));
     let perlin = Ray::new(&noise, &clip(DVec3::new(0.3, 0.2, 0.0), AnalyticCosine::default_bounds()));
     let marching = |teeth, shape, going_on: f64, segments| {
-        UnbiasedRayMarching::new(Comb::new(teeth, shape).expect("teeth"), Roulette::new(1.0 - going_on).expect("a probability"))
-            .in_segments(segments)
-            .expect("segments")
+        UnbiasedRayMarching::new(
+            Comb::new(teeth, shape).expect("teeth"),
+            Roulette::new(1.0 - going_on).expect("a probability"),
+        )
+        .in_segments(segments)
+        .expect("segments")
     };
     let criterion = &mut criterion;
     bench(criterion, "next-flight ratio", &NextFlight::new(NextFlightVersion::Ratio), &eq21, &perlin);
-    bench(criterion, "matched comb, 25 teeth", &marching(25, CombShape::EndpointMatched, 0.1, 1), &eq21, &perlin);
-    bench(criterion, "matched comb, 100 teeth, P = 0.001", &marching(100, CombShape::EndpointMatched, 0.001, 1), &eq21, &perlin);
-    bench(criterion, "100 segments of one tooth, P = 0.05", &marching(1, CombShape::Uniform, 0.05, 100), &eq21, &perlin);
+    bench(
+        criterion,
+        "matched comb, 25 teeth",
+        &marching(25, CombShape::EndpointMatched, 0.1, 1),
+        &eq21,
+        &perlin,
+    );
+    bench(
+        criterion,
+        "matched comb, 100 teeth, P = 0.001",
+        &marching(100, CombShape::EndpointMatched, 0.001, 1),
+        &eq21,
+        &perlin,
+    );
+    bench(
+        criterion,
+        "100 segments of one tooth, P = 0.05",
+        &marching(1, CombShape::Uniform, 0.05, 100),
+        &eq21,
+        &perlin,
+    );
     bench(criterion, "jittered ratio, 0.25", &JitteredRatio::new(0.25).expect("at most 1"), &eq21, &perlin);
     criterion.final_summary();
 }

@@ -43,7 +43,7 @@ pub struct Effort {
     pub samples: u64,
     /// Of how many the look-ups are counted.
     pub counted: u64,
-    /// Whether closed forms are evaluated where there are any: they look σ_t up some ten thousand times.
+    /// Whether closed forms are evaluated, where there are any and they take no tens of milliseconds.
     pub closed: bool,
 }
 
@@ -57,7 +57,8 @@ pub fn fight(ray: &TestRay, estimator: &AnyEstimator, effort: Effort, seed: u64)
     let moments = measurement.moments.scaled((ray.truth.optical_thickness).exp());
     let samples = moments.count();
     let measured = moments.population_variance().unwrap_or(f64::NAN);
-    let theory = if effort.closed {
+    let costly = matches!(estimator, AnyEstimator::Beyond(beyond) if beyond.closed_form_is_costly());
+    let theory = if effort.closed && !costly {
         let tolerance = Tolerance::to(1e-6);
         Some(predict(&ray.profile, estimator, &ray.truth, tolerance)?.theory)
     } else {

@@ -26,7 +26,7 @@ use smallvec::SmallVec;
 /// **Segments.** [`Self::in_segments`] makes the product of independent estimates over equal parts of the ray. The
 /// second-order noise falls from k2²/(2P) to k2²/(2GP). A ray whose combs resolve it is better off in one piece.
 ///
-/// **Variance.** Exact, by `second_moment`; [`predicted_relative_variance`] is the law of small deviations. Zero on a
+/// **Variance.** Exact, by `second_moment`; [`super::predicted_relative_variance`] is the law of small deviations. Zero on a
 /// constant profile, and for endpoint matching on a linear one (not for the periodised comb).
 ///
 /// **Cost.** G M (1 + E\[N\]) look-ups and the comb's shared ones; neighbouring segments share the one at their border.

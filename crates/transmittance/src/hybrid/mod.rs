@@ -58,8 +58,8 @@ impl Forecast {
 
 /// Where the second-order law of a comb ends: its third-order term is a tenth of it at k2 = 0.3, P = 0.1.
 const MOST_VARIANCE: f64 = 0.3;
-/// Without experience: strata of a quarter, which never fails by much.
-const CAUTIOUS: usize = 2;
+/// What a comb may cost on one remembered ray over jittered ratio tracking: a forecast is uncertain by about so much.
+const MOST_LOSS: f64 = 1.25;
 /// Variances below this are rounding, and not worth more look-ups.
 const ROUNDING: f64 = 1e-26;
 
@@ -75,12 +75,11 @@ enum Candidate {
 }
 
 impl Candidate {
-    fn all() -> impl Iterator<Item = Self> {
-        let combs = (0..FINENESSES).flat_map(|fineness| {
+    fn combs() -> impl Iterator<Item = Self> {
+        (0..FINENESSES).flat_map(|fineness| {
             let whole = |shape| Self::Whole { fineness, shape };
             [whole(CombShape::EndpointMatched), whole(CombShape::Uniform), Self::Apart { fineness }]
-        });
-        combs.chain((0..EPSILONS.len()).map(|index| Self::Jittered { index }))
+        })
     }
 
     /// Var(optical thickness) that a pilot found for its combs; for jittered ratio tracking the relative variance itself.
@@ -100,21 +99,49 @@ impl Hybrid {
     pub const USUAL_BUDGET: f64 = 6.0;
 
     /// The choice for a ray of this length, whose optical thickness in the majorant is `depth`, that costs at most `budget` look-ups per
-    /// unit of that: the least variance times look-ups in the geometric mean over the rays remembered.
+    /// unit of that (the least comb and the coarsest strata are allowed whatever they cost).
     ///
-    /// The cheapest of all is allowed whatever it costs. Without experience it is jittered ratio tracking: nobody knows then
-    /// whether a comb would do, and this always does.
+    /// It is jittered ratio tracking with the finest strata that the budget allows, unless a comb is forecast to cost less variance times
+    /// look-ups in the geometric mean over the rays remembered, and not much more on any of them: a mean hides the ray on
+    /// which a comb fails, and it fails by much. Then the best such comb. Without experience nobody knows of one.
     #[must_use]
     pub fn choose(experience: &Experience, length: f64, depth: f64, budget: f64) -> Self {
-        let teeth = teeth_for(depth);
-        let most = (budget * depth).max(f64::from(teeth) + 2.0);
-        let candidates = Candidate::all().filter_map(|candidate| {
-            let hybrid = Self::of(candidate, experience, length, (depth, teeth))?;
-            (hybrid.forecast.lookups <= most).then_some(hybrid)
+        let ray = (length, depth, teeth_for(depth));
+        let most = (budget * depth).max(f64::from(ray.2) + 2.0);
+        let finest = (0..EPSILONS.len()).rev().find(|&index| jittered_cost(depth, index).lookups <= most);
+        let jittered = Candidate::Jittered { index: finest.unwrap_or(0) };
+        let mut best = Self::of(jittered, experience, ray).unwrap_or(Self {
+            choice: Choice::Jittered(strata(finest.unwrap_or(0))),
+            forecast: jittered_cost(depth, finest.unwrap_or(0)),
         });
-        candidates.min_by(|a, b| a.forecast.price().total_cmp(&b.forecast.price())).unwrap_or_else(|| Self {
-            choice: Choice::Jittered(strata(CAUTIOUS)),
-            forecast: jittered_cost(depth, CAUTIOUS),
+        let safe = best.forecast;
+        for candidate in Candidate::combs() {
+            if let Some(comb) = Self::of(candidate, experience, ray)
+                && comb.forecast.lookups <= most
+                && comb.forecast.price() < best.forecast.price()
+                && comb.is_safe((candidate, jittered), experience, length, safe.lookups)
+            {
+                best = comb;
+            }
+        }
+        best
+    }
+
+    /// Whether a comb is forecast to cost hardly more than jittered ratio tracking on every ray remembered.
+    fn is_safe(
+        &self,
+        (candidate, jittered): (Candidate, Candidate),
+        experience: &Experience,
+        length: f64,
+        jittered_lookups: f64,
+    ) -> bool {
+        let Choice::Marching(estimator) = &self.choice else { return true };
+        experience.pilots().iter().all(|pilot| {
+            let on_this_ray = |candidate: Candidate| candidate.variance(pilot) * length / pilot.length;
+            let (roulette, segments) = (estimator.roulette(), estimator.segments());
+            let variance = predicted_relative_variance(on_this_ray(candidate), roulette, segments);
+            let allowed = MOST_LOSS * on_this_ray(jittered).max(ROUNDING) * jittered_lookups;
+            variance.max(ROUNDING) * self.forecast.lookups <= allowed
         })
     }
 
@@ -122,8 +149,7 @@ impl Hybrid {
     fn of(
         candidate: Candidate,
         experience: &Experience,
-        length: f64,
-        (depth, teeth): (f64, u32),
+        (length, depth, teeth): (f64, f64, u32),
     ) -> Option<Self> {
         let pilots = experience.pilots();
         let on_this_ray = |pilot: &Pilot| candidate.variance(pilot) * length / pilot.length;

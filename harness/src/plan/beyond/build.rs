@@ -2,18 +2,18 @@
 
 use super::erased::{ByCells, ByLookups, ByMajorant, Erased};
 use super::exact::Exact;
+use super::learning::{PILOTS, TUNING, comb_variance, experience};
 use super::progressive::Progressive;
 use super::{Beyond, Facts, cells};
 use crate::Failure;
 use crate::plan::{AnyProfile, Field, FieldJob, KnownField};
 use crate::spec::{BeyondSpec, BoundsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec};
 use fairflight_media::{Bounded, BoundedInCells, Vacuum};
-use fairflight_sources::Seeded;
 use fairflight_transmittance::{
     AdaptiveRatio, Bidirectional, Choice, Comb, CombShape, Experience, GeneralisedPoisson, Hybrid, Jackknife,
     JitteredRatio, JitteredRatioInCells, NextFlight, NextFlightVersion, PSeries, PSeriesVersion, Pilot,
-    ProgressiveMajorant, RayMarching, ResidualCells, Roulette, RunningCumulant, Telescoping,
-    UnbiasedRayMarching, Unidirectional, teeth_for,
+    ProgressiveMajorant, RayMarching, ResidualCells, Roulette, Telescoping, UnbiasedRayMarching,
+    Unidirectional, teeth_for,
 };
 use std::sync::{Arc, Mutex};
 
@@ -61,6 +61,7 @@ impl Beyond {
         let hybrid = Hybrid::choose(experience, length, majorant * length, budget);
         let facts = Facts {
             chosen: Some(chosen(&hybrid)),
+            costly: matches!(hybrid.choice(), Choice::Marching(marching) if marching.segments() > FEW_SEGMENTS),
             ..Facts::claiming("hybrid", majorant, "variance: that of what it chose")
         };
         Self::of(ByMajorant { estimator: hybrid, majorant }, facts)
@@ -257,7 +258,7 @@ fn marching(
             Roulette::new(stop).map_err(|error| refuse(&format!("{key}.roulette"), &error))?
         }
         (RouletteSpec::SelfTuned, Ray::One(profile)) => {
-            let k2 = profile.with(Tune { estimator: in_segments(comb, always_on()?, segments, key)? });
+            let k2 = comb_variance(profile, in_segments(comb, always_on()?, segments, key)?);
             let roulette = Roulette::tuned(k2);
             chosen = Some(format!(
                 "roulette: P = {:.4} from k2 = {k2:.3e} per segment, found by {TUNING} earlier draws whose look-ups are not charged",
@@ -270,7 +271,10 @@ fn marching(
         }
     };
     let estimator = in_segments(comb, roulette, segments, key)?;
-    Ok(Beyond::of(ByLookups(estimator), Facts { chosen, ..Facts::new("unbiased_ray_marching", COMBS) }))
+    Ok(Beyond::of(
+        ByLookups(estimator),
+        Facts { chosen, costly: segments > FEW_SEGMENTS, ..Facts::new("unbiased_ray_marching", COMBS) },
+    ))
 }
 
 /// The roulette that never stops at once: each draw then shows a variance.
@@ -289,56 +293,8 @@ fn in_segments(
         .map_err(|error| refuse(&format!("{key}.segments"), &error))
 }
 
-/// Draws that a self-tuned roulette learns from, and the stream they come from: none of an estimate, whatever its seed.
-const TUNING: u32 = 32;
-const TUNING_SEED: u64 = 0x7475_6E65;
-
-/// The variance of a comb in one segment, by draws that always make several combs.
-struct Tune {
-    estimator: UnbiasedRayMarching,
-}
-
-impl FieldJob for Tune {
-    type Output = f64;
-    fn run<F: KnownField>(self, field: &F) -> f64
-    where
-        for<'a> &'a F: Field,
-    {
-        let mut earlier = RunningCumulant::new();
-        let mut source = Seeded::new(TUNING_SEED);
-        for _ in 0..TUNING {
-            self.estimator.estimate_and_observe(&field, &mut source, &mut earlier);
-        }
-        earlier.value().unwrap_or(0.0)
-    }
-}
-
-/// Rays of the same profile that teach a hybrid, where there is no other: their variates are those of no estimate.
-const PILOTS: u32 = 8;
-const PILOT_SEED: u64 = 0x7069_6C6F;
-
-struct Teach {
-    majorant: f64,
-}
-
-impl FieldJob for Teach {
-    type Output = Experience;
-    fn run<F: KnownField>(self, field: &F) -> Experience
-    where
-        for<'a> &'a F: Field,
-    {
-        let mut experience = Experience::default();
-        if let Ok(bounded) = Bounded::new(field, self.majorant)
-            && self.majorant > 0.0
-        {
-            let mut source = Seeded::new(PILOT_SEED);
-            for _ in 0..PILOTS {
-                experience.observe(&Pilot::of(&bounded, &mut source));
-            }
-        }
-        experience
-    }
-}
+/// More segments than this, and their closed form is costly.
+const FEW_SEGMENTS: u32 = 8;
 
 fn hybrid(majorant: Option<f64>, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> {
     let Ray::One(profile) = ray else {
@@ -352,7 +308,7 @@ fn hybrid(majorant: Option<f64>, ray: Ray<'_>, key: &str) -> Result<Beyond, Fail
             ))
         })?,
     };
-    let experience = profile.with(Teach { majorant });
+    let experience = experience(profile, majorant);
     let mut beyond = Beyond::hybrid(&experience, profile.length(), majorant, Hybrid::USUAL_BUDGET);
     if let Some(chosen) = &mut beyond.facts.chosen {
         let lookups = u64::from(PILOTS) * Pilot::lookups(majorant * profile.length());

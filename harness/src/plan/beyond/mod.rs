@@ -4,6 +4,7 @@ mod build;
 mod cells;
 mod erased;
 mod exact;
+mod learning;
 mod progressive;
 
 use erased::{AnyField, AnyPieces, Erased};
@@ -36,6 +37,8 @@ struct Facts {
     chosen: Option<String>,
     /// Whether estimates must be drawn one after another, since each learns from those before it.
     sequential: bool,
+    /// Whether its closed form is an integral for each of many segments.
+    costly: bool,
 }
 
 impl Beyond {
@@ -55,6 +58,12 @@ impl Beyond {
     #[must_use]
     pub fn is_sequential(&self) -> bool {
         self.facts.sequential
+    }
+
+    /// Whether its closed form takes tens of milliseconds and more.
+    #[must_use]
+    pub fn closed_form_is_costly(&self) -> bool {
+        self.facts.costly
     }
 
     /// How its variance is known, in words.

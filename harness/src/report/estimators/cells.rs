@@ -80,7 +80,7 @@ impl Lattice for Dense {
 
 pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     let mut table = Table::new(
-        "cells",
+        "cells-grids",
         "Grids of bounds",
         "Seconds on one core, memory of the grid, and its cells on random chords of the medium: their number (neighbours with the same bounds \
          are one), the time to find them, and what residual ratio tracking and jittered ratio tracking (ε = 0.25) cost with them, as closed \

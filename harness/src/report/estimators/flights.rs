@@ -36,7 +36,7 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Flights, Fail
     };
     let flights = run.quick_or(4_000_000, 100_000_000_u64);
     let mut table = Table::new(
-        "flights",
+        "flights-distances",
         "Distances of jittered free flight on the seed ray",
         "Against the exact law 1 − exp(−τ(s)), in 4096 classes of equal probability and the escape; Kolmogorov's distance over the borders \
          of the classes. The false alarm of each test is 1e-7.",

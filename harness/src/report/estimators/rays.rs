@@ -150,7 +150,7 @@ fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
 
 fn table(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Table {
     let mut table = Table::new(
-        &format!("rays-{}", arena.id),
+        &format!("gains-{}", arena.id),
         &format!("Estimators on {} rays", arena.set.name),
         "Negative share, greatest estimate and kurtosis are those of the worst ray. Ours: not published before, as far as we know.",
         &[

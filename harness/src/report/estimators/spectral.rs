@@ -201,7 +201,7 @@ fn tinted(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<(Table, Vec<S
     let (field, thickness) = scaled(ray, coefficients)?;
     let flights = run.quick_or(100_000, 2_000_000);
     let mut table = Table::new(
-        "spectral",
+        "spectral-tinted",
         "Three wavelengths on the seed ray",
         "Extinctions 1, 0.6 and 0.25 times that of eq. 21. Variances of one flight, in units of what is estimated.",
         &[

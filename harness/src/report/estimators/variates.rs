@@ -104,7 +104,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Variates, Failure> {
          sets order the first {DIMENSIONS} variates of an estimate; what it draws beyond is independent."
     )];
     let mut table = Table::new(
-        "variates",
+        "variates-variance",
         "Variance of a mean of n over that of independent variates",
         "With the 95 % interval of a ratio of two variances of as many replicas (normal replicas: a factor of 1.28 either way).",
         &[
