@@ -76,7 +76,7 @@ fn bench<E>(
     let mut group = criterion.benchmark_group("estimators");
     group.sample_size(20).throughput(Throughput::Elements(lookups));
     group.bench_function(BenchmarkId::new("constant", name), |b| {
-        b.iter(|| estimates(&free, estimator, ESTIMATES))
+        b.iter(|| estimates(&free, estimator, ESTIMATES));
     });
     group.finish();
 

@@ -117,6 +117,9 @@ fn section(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Section {
     section
 }
 
+/// A value with its interval, if it has one.
+type Shown = (f64, Option<[f64; 2]>);
+
 fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
     let mut chart = Chart::new(
         &format!("rays-{}-gain", arena.id),
@@ -127,7 +130,7 @@ fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
     chart.caption =
         "Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking."
             .to_owned();
-    let marks = |of: &dyn Fn(&Standing) -> (f64, Option<[f64; 2]>)| {
+    let marks = |of: &dyn Fn(&Standing) -> Shown| {
         rows.iter()
             .enumerate()
             .map(|(i, row)| {

@@ -185,10 +185,13 @@ pub(super) fn study(run: &Run<'_>) -> Result<Spectral, Failure> {
     Ok(Spectral { section, unsound })
 }
 
+/// The seed ray in N wavelengths.
+type Tinted<'a, const N: usize> = Scaled<&'a Ray<Arc<AnalyticCosine>>, N>;
+
 fn scaled<const N: usize>(
     ray: &Ray<Arc<AnalyticCosine>>,
     coefficients: [f64; N],
-) -> Result<(Scaled<&Ray<Arc<AnalyticCosine>>, N>, [f64; N]), Failure> {
+) -> Result<(Tinted<'_, N>, [f64; N]), Failure> {
     let field =
         Scaled::new(ray, coefficients).map_err(|error| Failure::refused(format!("spectral: {error}")))?;
     let gray = ray.optical_thickness(0.0, ray.length());
