@@ -27,32 +27,30 @@ impl Contest {
     }
 }
 
-/// What is known before each ray: of all rays before it, and before the first one of the last, whose lesson comes a round late.
+/// What is known before each ray: the pilots of the rays before it, those of the last rays before the first; never its own.
 ///
 /// Each ray is looked at once by a pilot with variates of its own; look-ups of pilots are not charged to estimates.
 #[must_use]
 pub fn facts(set: &RaySet, seed: u64) -> Vec<Facts> {
     let pilots: Vec<Pilot> =
         set.rays.par_iter().enumerate().map(|(i, ray)| pilot(ray, derive_seed(seed, i as u64))).collect();
-    let mut experience = Experience::default();
-    if let Some(last) = pilots.last() {
-        experience.observe(last);
-    }
-    pilots
-        .iter()
-        .map(|pilot| {
-            let facts = Facts { mean: set.mean, experience };
-            experience.observe(pilot);
-            facts
+    let count = pilots.len();
+    (0..count)
+        .map(|ray| {
+            let mut experience = Experience::default();
+            // All others, the one just before it last.
+            (1..count).for_each(|k| experience.observe(&pilots[(ray + k) % count]));
+            Facts { mean: set.mean, experience }
         })
         .collect()
 }
 
-/// What a pilot of the same ray tells, with variates of its own.
+/// What a few pilots of the same ray tell, with variates of their own.
 #[must_use]
 pub fn facts_of(ray: &TestRay, seed: u64) -> Facts {
+    const PILOTS: u64 = 8;
     let mut experience = Experience::default();
-    experience.observe(&pilot(ray, seed));
+    (0..PILOTS).for_each(|k| experience.observe(&pilot(ray, derive_seed(seed, k))));
     Facts { mean: ray.truth.optical_thickness / ray.profile.length(), experience }
 }
 

@@ -60,6 +60,8 @@ impl Forecast {
 const MOST_VARIANCE: f64 = 0.3;
 /// What a comb may cost on one remembered ray over jittered ratio tracking: a forecast is uncertain by about so much.
 const MOST_LOSS: f64 = 1.25;
+/// A variance of a comb is known from one pilot to a factor of two: fewer than so many do not tell whether it fails.
+const LEAST_PILOTS: usize = 4;
 /// Variances below this are rounding, and not worth more look-ups.
 const ROUNDING: f64 = 1e-26;
 
@@ -80,6 +82,11 @@ impl Candidate {
             let whole = |shape| Self::Whole { fineness, shape };
             [whole(CombShape::EndpointMatched), whole(CombShape::Uniform), Self::Apart { fineness }]
         })
+    }
+
+    /// Whether its combs are of the rule's size.
+    fn is_least(self) -> bool {
+        matches!(self, Self::Whole { fineness: 0, .. } | Self::Apart { fineness: 0 })
     }
 
     /// Var(optical thickness) that a pilot found for its combs; for jittered ratio tracking the relative variance itself.
@@ -107,7 +114,7 @@ impl Hybrid {
     #[must_use]
     pub fn choose(experience: &Experience, length: f64, depth: f64, budget: f64) -> Self {
         let ray = (length, depth, teeth_for(depth));
-        let most = (budget * depth).max(f64::from(ray.2) + 2.0);
+        let most = budget * depth;
         let finest = (0..EPSILONS.len()).rev().find(|&index| jittered_cost(depth, index).lookups <= most);
         let jittered = Candidate::Jittered { index: finest.unwrap_or(0) };
         let mut best = Self::of(jittered, experience, ray).unwrap_or(Self {
@@ -117,7 +124,7 @@ impl Hybrid {
         let safe = best.forecast;
         for candidate in Candidate::combs() {
             if let Some(comb) = Self::of(candidate, experience, ray)
-                && comb.forecast.lookups <= most
+                && (comb.forecast.lookups <= most || candidate.is_least())
                 && comb.forecast.price() < best.forecast.price()
                 && comb.is_safe((candidate, jittered), experience, length, safe.lookups)
             {
@@ -154,7 +161,8 @@ impl Hybrid {
         let pilots = experience.pilots();
         let on_this_ray = |pilot: &Pilot| candidate.variance(pilot) * length / pilot.length;
         let count = pilots.len() as f64;
-        if pilots.is_empty() {
+        let is_comb = !matches!(candidate, Candidate::Jittered { .. });
+        if pilots.is_empty() || (is_comb && pilots.len() < LEAST_PILOTS) {
             return None;
         }
         let geometric_mean = |variance: &dyn Fn(&Pilot) -> f64| {

@@ -108,14 +108,6 @@ pub(super) fn goals(standings: &[Standings]) -> Vec<Claim> {
         holds,
         "ratio to the best published one, which is named",
     ));
-    let (measured, holds) = against("hybrid, frugal");
-    claims.push(claim(
-        "H4",
-        "nor is it with no more than two look-ups per unit of the majorant's optical thickness".to_owned(),
-        measured,
-        holds,
-        "ratio to the best published one, whatever that costs",
-    ));
     claims
 }
 

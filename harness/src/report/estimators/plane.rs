@@ -181,7 +181,7 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let mut overview = Section::new("plane", "The canonical plane: who wins");
     overview.text = vec![
         "georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
-         the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know a pilot of the same ray, \
+         the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know eight pilots of the same ray, \
          from variates of its own."
             .to_owned(),
         "Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned(),
