@@ -3,7 +3,8 @@
 use super::answer::{Advice, Answer, Contestant, How};
 use super::forecast::Signs;
 use super::question::Question;
-use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, Unit, entrants, facts, fight, gain, pilot};
+use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, Unit, entrants, facts, fight, gain};
+use crate::plan::pilot;
 use crate::{Environment, Failure};
 use fairflight_sources::derive_seed;
 use rayon::prelude::*;
@@ -32,7 +33,7 @@ pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) 
         .enumerate()
         .map(|(i, ray)| {
             let seed = derive_seed(derive_seed(seed, 3), i as u64);
-            Signs::of(ray, pilot(ray, seed), derive_seed(seed, 1))
+            Signs::of(ray, pilot(&ray.profile, ray.majorant, seed), derive_seed(seed, 1))
         })
         .collect();
     let progress = environment.progress(entrants().len() as u64 + (BEST as u64 + 1), "advising");

@@ -36,6 +36,45 @@ pub struct Bout {
     pub samples: u64,
 }
 
+impl Bout {
+    /// How far the mean is from the truth, in standard errors; `None` where there is no error but rounding, or the law is not mild: a heavy tail
+    /// that was not met shows a mean too small, and a variance too small with it.
+    #[must_use]
+    pub fn z(&self) -> Option<f64> {
+        /// A mean of T is rounded to about this.
+        const ROUNDING: f64 = 1e-13;
+        /// A kurtosis of this over the number of samples leaves their mean close to normal.
+        const MILD: f64 = 0.02;
+        let is_mild = self.kurtosis.is_some_and(|kurtosis| kurtosis < MILD * self.samples as f64);
+        (is_mild && self.mean_error > ROUNDING).then(|| (self.relative_mean - 1.0) / self.mean_error)
+    }
+}
+
+/// The z-scores of many bouts as one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pooled {
+    /// Their sum over the square root of their number: a standard normal variate if all means are right.
+    pub z: f64,
+    /// Their number.
+    pub bouts: usize,
+}
+
+impl Pooled {
+    /// Whether chance explains it, in tables of a hundred rows.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        const CRITICAL: f64 = 6.0;
+        self.z.abs() <= CRITICAL
+    }
+}
+
+/// The bouts whose law is mild, together.
+pub fn pooled<'a>(bouts: impl Iterator<Item = &'a Bout>) -> Pooled {
+    let scores: Vec<f64> = bouts.filter_map(Bout::z).collect();
+    let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
+    Pooled { z, bouts: scores.len() }
+}
+
 /// How thoroughly a bout is fought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {

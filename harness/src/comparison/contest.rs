@@ -2,9 +2,8 @@
 
 use super::{Bout, Effort, Entrant, Facts, RaySet, TestRay, fight};
 use crate::Failure;
-use crate::plan::{Field, FieldJob, KnownField};
-use fairflight_media::Bounded;
-use fairflight_sources::{Seeded, derive_seed};
+use crate::plan::pilot;
+use fairflight_sources::derive_seed;
 use fairflight_transmittance::{Experience, Pilot};
 use rayon::prelude::*;
 
@@ -32,8 +31,12 @@ impl Contest {
 /// Each ray is looked at once by a pilot with variates of its own; look-ups of pilots are not charged to estimates.
 #[must_use]
 pub fn facts(set: &RaySet, seed: u64) -> Vec<Facts> {
-    let pilots: Vec<Pilot> =
-        set.rays.par_iter().enumerate().map(|(i, ray)| pilot(ray, derive_seed(seed, i as u64))).collect();
+    let pilots: Vec<Pilot> = set
+        .rays
+        .par_iter()
+        .enumerate()
+        .map(|(i, ray)| pilot(&ray.profile, ray.majorant, derive_seed(seed, i as u64)))
+        .collect();
     let count = pilots.len();
     (0..count)
         .map(|ray| {
@@ -50,28 +53,8 @@ pub fn facts(set: &RaySet, seed: u64) -> Vec<Facts> {
 pub fn facts_of(ray: &TestRay, seed: u64) -> Facts {
     const PILOTS: u64 = 8;
     let mut experience = Experience::default();
-    (0..PILOTS).for_each(|k| experience.observe(&pilot(ray, derive_seed(seed, k))));
+    (0..PILOTS).for_each(|k| experience.observe(&pilot(&ray.profile, ray.majorant, derive_seed(seed, k))));
     Facts { mean: ray.truth.optical_thickness / ray.profile.length(), experience }
-}
-
-/// A look at one ray.
-#[must_use]
-pub fn pilot(ray: &TestRay, seed: u64) -> Pilot {
-    struct Look {
-        majorant: f64,
-        seed: u64,
-    }
-    impl FieldJob for Look {
-        type Output = Pilot;
-        fn run<F: KnownField>(self, field: &F) -> Pilot
-        where
-            for<'a> &'a F: Field,
-        {
-            let field = Bounded::new(field, self.majorant).expect("a majorant of a set is at least 0");
-            Pilot::of(&field, &mut Seeded::new(self.seed))
-        }
-    }
-    ray.profile.with(Look { majorant: ray.majorant, seed })
 }
 
 /// Lets all entrants meet all rays. `advance` is told of each bout.

@@ -9,8 +9,8 @@ mod entrant;
 mod gain;
 mod rays;
 
-pub use bout::{Bout, Effort, fight};
-pub use contest::{Contest, contest, facts, facts_of, pilot};
+pub use bout::{Bout, Effort, Pooled, fight, pooled};
+pub use contest::{Contest, contest, facts, facts_of};
 pub use entrant::{Entrant, Facts, entrants};
 pub use gain::{Gain, Unit, gain};
 pub use rays::{RaySet, TestRay, chords};

@@ -22,7 +22,7 @@ mod transport;
 mod voxel_lattice;
 mod walk;
 
-pub use beyond::Beyond;
+pub use beyond::{Beyond, pilot};
 pub use control::AnyControl;
 pub use estimator::{AnyEstimator, Estimator, EstimatorJob, Lawful};
 pub use field::{Field, Knowledge, KnownField, ThicknessMethod};

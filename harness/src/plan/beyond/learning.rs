@@ -2,7 +2,7 @@
 
 use crate::plan::{AnyProfile, Field, FieldJob, KnownField};
 use fairflight_media::Bounded;
-use fairflight_sources::Seeded;
+use fairflight_sources::{Seeded, derive_seed};
 use fairflight_transmittance::{Experience, Pilot, RunningCumulant, UnbiasedRayMarching};
 
 /// Draws that a self-tuned roulette learns from, and the stream they come from: none of an estimate, whatever its seed.
@@ -29,31 +29,30 @@ impl FieldJob for Tune {
     }
 }
 
-/// Rays of the same profile that teach a hybrid, where there is no other: their variates are those of no estimate.
+/// Pilots of the same profile that teach a hybrid: their variates are those of no estimate.
 pub(super) const PILOTS: u32 = 8;
 const PILOT_SEED: u64 = 0x7069_6C6F;
 
-struct Teach {
-    majorant: f64,
-}
-
-impl FieldJob for Teach {
-    type Output = Experience;
-    fn run<F: KnownField>(self, field: &F) -> Experience
-    where
-        for<'a> &'a F: Field,
-    {
-        let mut experience = Experience::default();
-        if let Ok(bounded) = Bounded::new(field, self.majorant)
-            && self.majorant > 0.0
+/// A look at a profile below `majorant`, from the stream of `seed`; of a medium without extinction it tells nothing.
+#[must_use]
+pub fn pilot(profile: &AnyProfile, majorant: f64, seed: u64) -> Pilot {
+    struct Look {
+        majorant: f64,
+        seed: u64,
+    }
+    impl FieldJob for Look {
+        type Output = Pilot;
+        fn run<F: KnownField>(self, field: &F) -> Pilot
+        where
+            for<'a> &'a F: Field,
         {
-            let mut source = Seeded::new(PILOT_SEED);
-            for _ in 0..PILOTS {
-                experience.observe(&Pilot::of(&bounded, &mut source));
+            match Bounded::new(field, self.majorant) {
+                Ok(bounded) if self.majorant > 0.0 => Pilot::of(&bounded, &mut Seeded::new(self.seed)),
+                _ => Pilot::default(),
             }
         }
-        experience
     }
+    profile.with(Look { majorant, seed })
 }
 
 /// The variance of a comb in one segment, by an estimator whose roulette never stops at once.
@@ -63,5 +62,9 @@ pub(super) fn comb_variance(profile: &AnyProfile, estimator: UnbiasedRayMarching
 
 /// What pilots of the profile tell.
 pub(super) fn experience(profile: &AnyProfile, majorant: f64) -> Experience {
-    profile.with(Teach { majorant })
+    let mut experience = Experience::default();
+    (0..PILOTS).for_each(|k| {
+        experience.observe(&pilot(profile, majorant, derive_seed(PILOT_SEED, u64::from(k))));
+    });
+    experience
 }

@@ -7,6 +7,8 @@ mod exact;
 mod learning;
 mod progressive;
 
+pub use learning::pilot;
+
 use erased::{AnyField, AnyPieces, Erased};
 use fairflight_laws::Unit;
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};

@@ -1,7 +1,7 @@
 //! The canonical plane of georgiev-2019: six profiles over transmittance and tightness of the majorant.
 
 use crate::Failure;
-use crate::comparison::{Bout, Effort, Entrant, Facts, TestRay, entrants, facts_of, fight};
+use crate::comparison::{Bout, Effort, Entrant, Facts, TestRay, entrants, facts_of, fight, pooled};
 use crate::plan::AnyProfile;
 use crate::reference::Truth;
 use crate::report::document::{Axis, Cell, Content, HeatMap, Numbers, Panel, Section, Table};
@@ -173,7 +173,8 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
         HeatMap::new("plane-winners", "Who wins the canonical plane, per look-up", x(), y(), winners);
     winner_map.caption = format!(
         "The estimator with the least variance times look-ups at each point, and how much it gains over ratio tracking (lines). Tightness is \
-         the greatest extinction over the majorant. {} of {} points are won by {}.",
+         the greatest extinction over the majorant. On const, cos and the lines combs have no variance but rounding: there the cheapest of them wins. {} of \
+         {} points are won by {}.",
         wins[0].1,
         bouts.len(),
         wins[0].0
@@ -244,20 +245,11 @@ fn summary(players: &[Entrant], bouts: &[Vec<Bout>]) -> (Table, Vec<String>) {
         gains.sort_unstable_by(f64::total_cmp);
         let won =
             bouts.iter().filter(|bouts| bouts.iter().all(|other| price(other) >= price(&bouts[e]))).count();
-        let scores: Vec<f64> = bouts
-            .iter()
-            .map(|bouts| &bouts[e])
-            .filter(|bout| {
-                bout.mean_error > 1e-13
-                    && bout.kurtosis.is_some_and(|kurtosis| kurtosis < 0.02 * bout.samples as f64)
-            })
-            .map(|bout| (bout.relative_mean - 1.0) / bout.mean_error)
-            .collect();
-        let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
-        if z.abs() > 6.0 {
+        let pooled = pooled(bouts.iter().map(|bouts| &bouts[e]));
+        if !pooled.is_sound() {
             unsound.push(format!(
-                "{} on the canonical plane: means are off by {z:.1} standard errors",
-                player.name
+                "{} on the canonical plane: means are off by {:.1} standard errors",
+                player.name, pooled.z
             ));
         }
         table.rows.push(vec![
@@ -266,8 +258,8 @@ fn summary(players: &[Entrant], bouts: &[Vec<Bout>]) -> (Table, Vec<String>) {
             Cell::Number(gains[0]),
             Cell::Number(gains[gains.len() / 2]),
             Cell::Number(gains[gains.len() - 1]),
-            Cell::maybe((!scores.is_empty()).then_some(z)),
-            Cell::Count(scores.len() as u64),
+            Cell::maybe((pooled.bouts > 0).then_some(pooled.z)),
+            Cell::Count(pooled.bouts as u64),
         ]);
     }
     (table, unsound)

@@ -2,7 +2,7 @@
 
 use super::sets::Arena;
 use crate::Failure;
-use crate::comparison::{Bout, Contest, Entrant, Gain, Unit, contest, entrants, gain};
+use crate::comparison::{Bout, Contest, Entrant, Gain, Unit, contest, entrants, gain, pooled};
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use crate::report::run::Run;
 
@@ -75,23 +75,13 @@ fn mean(bouts: &[Bout], of: impl Fn(&Bout) -> f64) -> f64 {
     bouts.iter().map(of).sum::<f64>() / bouts.len() as f64
 }
 
-/// The mean of all rays is off by more than chance would have it: each ray's deviation over its standard error, summed and normalised. Only
-/// rays whose law is mild are asked: a heavy tail that was not met shows a mean too small and a variance too small with it.
+/// The mean of all rays is off by more than chance would have it.
 fn unsound(name: &str, set: &str, bouts: &[Bout]) -> Option<String> {
-    /// Of a standard normal variate, beyond chance in a table of a hundred rows.
-    const CRITICAL: f64 = 6.0;
-    /// A kurtosis of this over the number of samples leaves a mean of them close to normal.
-    const MILD: f64 = 0.02;
-    let mild = |bout: &&Bout| {
-        bout.mean_error > 1e-13 && bout.kurtosis.is_some_and(|kurtosis| kurtosis < MILD * bout.samples as f64)
-    };
-    let scores: Vec<f64> =
-        bouts.iter().filter(mild).map(|bout| (bout.relative_mean - 1.0) / bout.mean_error).collect();
-    let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
-    (z.abs() > CRITICAL).then(|| {
+    let pooled = pooled(bouts.iter());
+    (!pooled.is_sound()).then(|| {
         format!(
-            "{name} on the {set} rays: its mean is off by {z:.1} standard errors over {} rays",
-            scores.len()
+            "{name} on the {set} rays: its mean is off by {:.1} standard errors over {} rays",
+            pooled.z, pooled.bouts
         )
     })
 }
