@@ -103,7 +103,9 @@ pub fn fight(ray: &TestRay, estimator: &AnyEstimator, effort: Effort, seed: u64)
     } else {
         None
     };
-    let known = theory.map(|theory| theory.log_relative_variance.exp()).filter(|variance| !variance.is_nan());
+    // An infinite one says that its sum over levels or orders did not converge; what is measured may then be far too small.
+    let known =
+        theory.map(|theory| theory.log_relative_variance.exp()).filter(|variance| variance.is_finite());
     let relative_variance = known.unwrap_or(measured);
     let lookups = theory
         .map(|theory| theory.lookups)

@@ -43,8 +43,7 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Flights, Fail
         &[
             ("sampler", ""),
             ("flights", "1"),
-            ("chi-square / degrees of freedom", "1"),
-            ("p below", "1"),
+            ("classes, pooled where they are too small", ""),
             ("sqrt(n) · Kolmogorov's distance", "1"),
             ("p below", "1"),
             ("look-ups", "1"),
@@ -82,8 +81,7 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Flights, Fail
         table.rows.push(vec![
             Cell::text(name),
             Cell::Count(sampled.flights),
-            Cell::Number(fit.statistic / CLASSES as f64),
-            Cell::maybe(fit.p_value_bound),
+            Cell::text(fit.reason),
             Cell::Number(scaled),
             Cell::Number(p),
             Cell::Number(sampled.lookups),
