@@ -40,7 +40,7 @@ fn model<M: CollisionModel>(name: &'static str, of: impl Fn(Albedo) -> M + Send 
 /// The variance on a profile with a law so mild that moments up to the eighth leave no doubt about the test: whoever
 /// passes here was tested.
 pub(super) fn variance_checks<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Vec<Check> {
-    const SAMPLES: u64 = 100_000;
+    const SAMPLES: u64 = 125_000;
     let length = specimen.field.length();
     let mild = move |main: f64, sampling: f64, run: crate::Run, specimen: &Specimen<F>| {
         let (Ok(control), Ok(sampling)) = (Constant::new(main, length), Constant::new(sampling, length))

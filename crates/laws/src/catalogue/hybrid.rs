@@ -57,5 +57,6 @@ fn check<F: SpecimenField>(
     let length = specimen.field.length();
     let depth = specimen.field.majorant() * length;
     let hybrid = Hybrid::choose(experience, length, depth, Hybrid::USUAL_BUDGET);
-    specimen.examine(&hybrid, &[], |_| Scores::Unbounded, LookupLaw::MeanOnly, run)
+    // A roulette that goes on once in a thousand makes look-ups too skewed to test; those of each choice are tested as its own.
+    specimen.examine(&hybrid, &[], |_| Scores::Unbounded, LookupLaw::Unknown, run)
 }
