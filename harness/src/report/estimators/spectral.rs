@@ -29,8 +29,9 @@ pub(super) fn steps() -> u64 {
     RATIOS.len() as u64 + 1
 }
 
-/// Distances at the mean extinction of the first wavelength, weighted for all: its weights have no bound, so that its means cannot be judged.
-const BASELINE: &str = "the first one's distances";
+/// Distances at the mean extinction of the densest wavelength, weighted for all: its weights have no bound, so that its means cannot be
+/// judged.
+const BASELINE: &str = "the densest one's distances";
 
 /// What flights of N wavelengths scored.
 struct Scored<const N: usize> {
@@ -157,7 +158,12 @@ where
         ("hero wavelength", score(field, thickness, &HeroWavelength::new(constant(greatest)?), go(3))),
         (
             BASELINE,
-            score(field, thickness, &SharedDistance::new(constant(thickness[0] / field.length())?), go(4)),
+            score(
+                field,
+                thickness,
+                &SharedDistance::new(constant(thickness.into_iter().fold(0.0, f64::max) / field.length())?),
+                go(4),
+            ),
         ),
     ])
 }
@@ -260,8 +266,8 @@ fn two(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<(Chart, Vec<Stri
         Axis::linear("σ_2 / σ_1 [1]"),
         Axis::logarithmic("Var · look-ups / (1 − T)² [1]"),
     );
-    chart.caption = "With the distances of the first wavelength the variance is infinite from a factor of 2 on (raab-2008 3.2): what is \
-                     measured there is what these flights happened to meet."
+    chart.caption = "With the distances of the densest wavelength the weights of the thinner one grow along the ray; in an endless medium their variance \
+                     is infinite from a factor of 2 on (raab-2008 3.2). This ray ends: what is measured beyond is hollow."
         .to_owned();
     let flights = run.quick_or(50_000, 500_000);
     let mut curves: Vec<(&'static str, Vec<(f64, f64)>)> = Vec::new();
