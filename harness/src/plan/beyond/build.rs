@@ -193,7 +193,7 @@ fn next_flight(majorant: f64, version: NextFlightKind, key: &str) -> Result<Beyo
         NextFlightKind::Delta => known(NextFlightVersion::Delta),
         NextFlightKind::Ratio => known(NextFlightVersion::Ratio),
         NextFlightKind::Unidirectional => {
-            Beyond::of(ByMajorant { estimator: Unidirectional, majorant }, facts(UNKNOWN))
+            Beyond::of(ByMajorant { estimator: Unidirectional, majorant }, facts(QUADRATURE))
         }
         NextFlightKind::Bidirectional => {
             Beyond::of(ByMajorant { estimator: Bidirectional, majorant }, facts(UNKNOWN))
