@@ -108,10 +108,10 @@ pub fn compare(
     let unit = Unit::of(truth.optical_thickness);
     let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
     let reference = Reference {
-        mean: closed.mean,
         error: truth.error() * unit.scale(),
         moments: Some(closed),
         scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
+        ..Reference::exact(closed.mean)
     };
     let verdict = judge(&measurement.moments.scaled(unit.scale()), &reference, alpha);
     Comparison { unit, closed, verdict }

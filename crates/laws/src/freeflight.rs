@@ -75,19 +75,19 @@ impl FlightExpectation {
             let (name, function) = TEST_FUNCTIONS[i];
             let moments = sampler.collided(quadrature, tolerance, &|s| function(s / length)).value;
             Reference {
-                mean: means.value[i],
                 error: means.error[i],
                 moments: Some(ClosedMoments::from_raw(&moments)),
                 scores: scores(weights, INDICATORS.contains(&name)),
+                ..Reference::exact(means.value[i])
             }
         });
         let tau = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]);
         let transmittance = (-tau.value[0]).exp();
         let escaped = Reference {
-            mean: transmittance,
             error: transmittance * tau.error[0].exp_m1(),
             moments: Some(ClosedMoments::from_raw(&sampler.escaped(quadrature, tolerance))),
             scores: scores(weights, true),
+            ..Reference::exact(transmittance)
         };
         Self {
             length,

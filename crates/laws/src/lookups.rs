@@ -1,6 +1,6 @@
 //! The law of cost: the mean number of look-ups is the expected one.
 
-use fairflight_stats::{ClosedMoments, Reference, Scores};
+use fairflight_stats::{ClosedMoments, Reference};
 
 /// What is known of the number of look-ups of one estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
         LookupLaw::MeanOnly => None,
         LookupLaw::Unknown => return None,
     };
-    Some(Reference { mean: expected, error: QUADRATURE * expected, moments, scores: Scores::Unbounded })
+    Some(Reference { error: QUADRATURE * expected, moments, ..Reference::exact(expected) })
 }
 
 /// As [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
@@ -35,7 +35,7 @@ pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
 pub fn with_moments(raw: &[f64]) -> Reference {
     let moments = ClosedMoments::from_raw(raw);
     let mean = moments.mean;
-    Reference { mean, error: QUADRATURE * mean, moments: Some(moments), scores: Scores::Unbounded }
+    Reference { error: QUADRATURE * mean, moments: Some(moments), ..Reference::exact(mean) }
 }
 
 /// Every cumulant of a Poisson law is its mean: m_n = Σ_{j=2..n} C(n − 1, j − 1) λ m_{n−j}.

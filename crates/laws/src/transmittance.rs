@@ -42,7 +42,7 @@ impl Expectation {
         let error = mean * (truth.error.exp_m1() + ROUNDING * truth.optical_thickness.abs());
         let moments =
             (one == 1.0).then(|| ClosedMoments::from_central(mean, &theory.relative_central.map(Some)));
-        Reference { mean, error, moments, scores: *scores }
+        Reference { error, moments, scores: *scores, ..Reference::exact(mean) }
     }
 }
 

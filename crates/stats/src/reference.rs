@@ -27,6 +27,21 @@ pub enum Scores {
     Unbounded,
 }
 
+/// How the error of a reference is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Certainty {
+    /// Proved: a closed form, or a quadrature whose enclosure holds between its nodes as well.
+    Certified,
+    /// Estimated from the values at nodes: features between them may have been missed. Proved are only bounds of the mean,
+    /// infinite where nothing is.
+    Estimated {
+        /// Lower bound of the mean.
+        low: f64,
+        /// Upper bound of the mean.
+        high: f64,
+    },
+}
+
 /// The truth that a sample should have as its mean, with its own error and what is known of the law of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
@@ -34,6 +49,8 @@ pub struct Reference {
     pub mean: f64,
     /// Bound of the absolute error of `mean`; zero for a closed form.
     pub error: f64,
+    /// Whether `error` was proved or estimated.
+    pub certainty: Certainty,
     /// Moments of one sample in closed form, where there is one. Their mean is taken to be `mean`.
     pub moments: Option<ClosedMoments>,
     /// The values that one sample can take.
@@ -44,7 +61,7 @@ impl Reference {
     /// An exact mean and nothing else known.
     #[must_use]
     pub const fn exact(mean: f64) -> Self {
-        Self { mean, error: 0.0, moments: None, scores: Scores::Unbounded }
+        Self { mean, error: 0.0, certainty: Certainty::Certified, moments: None, scores: Scores::Unbounded }
     }
 
     /// Success probability mean/high of a two-valued sample, its rounding beyond [0, 1] cut off; else `None`.
