@@ -1,6 +1,5 @@
 //! The test of a mean: exact binomial, normal where that is adequate, Bernstein's inequality, or none.
 
-use crate::bernstein::Bernstein;
 use crate::binomial::Binomial;
 use crate::binomial_inference::trials_needed;
 use crate::evidence::{Evidence, MeanJudgement, relative};
@@ -8,6 +7,7 @@ use crate::moments::Moments;
 use crate::normal_test::normal;
 use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome, POWER};
 use crate::reference::{Reference, Scores};
+use crate::sample_size::{bernstein_law, bernstein_reach, least_sufficient};
 use crate::verdict::MeanTest;
 
 /// Judges the mean of n >= 1 samples. The level is alpha for two-valued samples, which have no other test, else alpha/2.
@@ -98,22 +98,10 @@ fn binomial(n: u64, successes: f64, p: f64, reference: &Reference, high: f64, le
 }
 
 /// Bernstein's inequality for bounded samples.
-///
-/// Where the variance is unknown it is at most (maximum - mean)(mean - minimum) (Bhatia and Davis 2000).
 fn bernstein(reference: &Reference, mean: f64, n: f64, level: f64) -> Option<MeanJudgement> {
-    let Scores::Bounded { minimum, maximum } = reference.scores else { return None };
-    let (below, above) = ((reference.mean - minimum).max(0.0), (maximum - reference.mean).max(0.0));
-    let greatest = below * above;
-    let variance =
-        reference.closed_moments().and_then(|moments| moments.variance).map_or(greatest, |v| v.min(greatest));
-    let law = Bernstein { variance, bound: below.max(above) };
+    let law = bernstein_law(reference)?;
     let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
-    // A bias is seen if it exceeds the critical deviation by one that the mean makes with probability 1 - POWER only
-    // (one-sided, hence twice that as a two-sided level), at the same variance.
-    let detectable = |n: f64| {
-        let reach = law.deviation(level, n) + law.deviation(2.0 * (1.0 - POWER), n);
-        relative(reach + 2.0 * reference.allowance(), reference)
-    };
+    let detectable = |n: f64| relative(bernstein_reach(&law, reference, level, n), reference);
     let enough = |n: f64| detectable(n).is_some_and(|d| d < MAX_DETECTABLE_RELATIVE_BIAS);
     Some(
         Evidence {
@@ -126,25 +114,4 @@ fn bernstein(reference: &Reference, mean: f64, n: f64, level: f64) -> Option<Mea
         }
         .decide(),
     )
-}
-
-/// The least N, to a percent, from which on the monotone condition holds; infinite if it does not up to 1e300.
-fn least_sufficient(enough: impl Fn(f64) -> bool) -> f64 {
-    let mut high = 1.0;
-    while !enough(high) {
-        high *= 2.0;
-        if high > 1e300 {
-            return f64::INFINITY;
-        }
-    }
-    let mut low = 0.5 * high;
-    while high - low > 0.01 * high {
-        let middle = 0.5 * (low + high);
-        if enough(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high.ceil()
 }
