@@ -3,7 +3,7 @@
 use super::{HardCase, LAWFUL, Outcome};
 use crate::lookups::LookupLaw;
 use crate::transmittance::{Observed, check};
-use crate::{Expectation, Refusal, Run, Truth};
+use crate::{Expectation, Kind, Refusal, Run, Truth};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, Extinction, Majorant, Vacuum};
 use fairflight_stats::Scores;
@@ -64,21 +64,22 @@ pub(super) fn cases() -> Vec<HardCase> {
         ("1.5 above its majorant 1", 1.5),
     ];
     for (name, value) in faults {
-        let mut add = |estimator: &'static str, function: fn(&Faulty) -> Outcome| {
-            cases.push(HardCase::deterministic(
+        let mut add = |estimator: &'static str, kind: Kind, function: fn(&Faulty) -> Outcome| {
+            let case = HardCase::deterministic(
                 15,
                 format!("a medium that returns {name}: {estimator}"),
                 estimator,
                 "an error with the point",
                 "refused",
                 move || function(&Faulty(value)),
-            ));
+            );
+            cases.push(case.about([kind]));
         };
-        add("woodcock", |field| tried(field, Woodcock));
-        add("line integral", |field| tried(field, LineIntegral::new(4).expect(LAWFUL)));
+        add("woodcock", Kind::Woodcock, |field| tried(field, Woodcock));
+        add("line integral", Kind::LineIntegral, |field| tried(field, LineIntegral::new(4).expect(LAWFUL)));
         // The double particle model has no majorant to be violated.
         if !value.is_finite() {
-            add("double particle", |field| {
+            add("double particle", Kind::DoubleParticle, |field| {
                 let model = DoubleParticle { albedo: Albedo::default() };
                 let sampling = Constant::new(1.0, 2.0).expect(LAWFUL);
                 tried(field, &Tracking::new(model, Vacuum::new(2.0), sampling))
