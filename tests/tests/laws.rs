@@ -63,6 +63,7 @@ media!(
     points,
     paths,
     vpl,
+    exact,
 );
 
 #[test]
