@@ -4,6 +4,7 @@ mod closed_forms;
 mod connections;
 mod decisions;
 mod densities;
+mod variances;
 
 use super::{Check, Law};
 use crate::CheckResult;
@@ -16,6 +17,7 @@ pub(super) fn without_chance() -> Vec<Check> {
     let mut checks = decisions::checks();
     checks.extend(densities::checks());
     checks.extend(closed_forms::checks());
+    checks.extend(variances::checks());
     checks.extend(connections::checks());
     checks
 }
