@@ -28,11 +28,17 @@ fn check(profile: &dyn Breakpoints, exponent: f64) {
     assert!(off.abs() < 1e-12, "{off:e}");
 }
 
+/// Of any height above 1: for some of them the two rules of a panel agree on a wrong value.
 #[test]
-fn a_tent_through_one() {
-    // r = 2 s and back: ∫_0^2 of the density over r.
-    let tent = PiecewiseLinear::new(vec![0.0, 1.0, 2.0], vec![0.0, 2.0, 0.0]).unwrap();
-    check(&tent, ALBEDO + 8.0 / 3.0);
+fn tents_through_one() {
+    for i in 1..=2000 {
+        let h = 1.0 + 4.0 * f64::from(i) / 2000.0;
+        let tent = PiecewiseLinear::new(vec![0.0, 1.0, 2.0], vec![0.0, h, 0.0]).unwrap();
+        // r = h s and back: 2/h ∫_0^h of the density over r.
+        let crossed = 1.0 / 6.0 + (h.powi(3) - 1.0) / 3.0 - (h * h - 1.0) / 2.0;
+        let square = (1.0 + (h - 1.0).powi(3)) / 3.0;
+        check(&tent, 2.0 / h * (ALBEDO * crossed + square - 2.0 * h + h * h + h));
+    }
 }
 
 #[test]
