@@ -13,9 +13,8 @@
 //! rejects from z = sqrt(2 L) on, as a Gaussian bound, less what the sample's own skewness takes.
 //!
 //! **By an end of the law.** (4) If X >= a then xi = (X - c)/(c - a) >= -1, and as (x - ln(1 + x))/x^2 falls in x > -1,
-//! for 0 <= l < 1, exp(l xi - psi(l) xi^2) <= 1 + l xi, psi(l) = -ln(1 - l) - l (Fan, Grama and Liu, "Exponential
-//! inequalities for martingales with applications", Electronic Journal of Probability 20 (2015), lemma 4.1; Waudby-Smith and
-//! Ramdas, "Estimating means of bounded random variables by betting", JRSS B 86 (2024), section 3.2). No variance is
+//! for 0 <= l < 1, exp(l xi - psi(l) xi^2) <= 1 + l xi, psi(l) = -ln(1 - l) - l (fan-2015 lemma 4.1; the empirical Bernstein
+//! inequality of waudby-smith-2024 section 3.2 is made of it). No variance is
 //! asked for: large values that the sample lacks could only make the mean larger, and the sum of squares is the sample's.
 //!
 //! (5) A mean over several t or l is as good as one (the expectation of a mean), and fits samples of any variance. Two tests of one

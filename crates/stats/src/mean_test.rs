@@ -13,9 +13,9 @@ use crate::verdict::MeanTest;
 
 /// Judges the mean of n >= 1 samples. The level is alpha for two-valued samples, which have no other test, else alpha/2.
 ///
-/// The z-test decides alone where variance and shape of the law are known, which does not depend on the sample. Elsewhere
-/// nothing is rejected but by an inequality whose level holds for every shape; what a sample's own standard error says is enough to
-/// agree, and no more than that.
+/// The z-test decides alone where variance and shape of the law are known, and no single sample decides it. Elsewhere nothing is
+/// rejected but by an inequality whose level holds for every shape; what a normal approximation says is enough to agree there, and
+/// no more than that.
 pub(crate) fn judge_mean(measured: &Moments, reference: &Reference, mean: f64, alpha: f64) -> MeanJudgement {
     let n = measured.count() as f64;
     if let Scores::TwoValued { high } = reference.scores {
@@ -35,7 +35,7 @@ pub(crate) fn judge_mean(measured: &Moments, reference: &Reference, mean: f64, a
     }
     let z = z_test(measured, reference, mean, level);
     if let Ok(z) = &z
-        && z.is_of_the_law
+        && z.may_reject
     {
         return z.decide(level);
     }
@@ -86,7 +86,7 @@ impl ZTest {
     }
 }
 
-/// A deviation that only the sample's own moments call one.
+/// A deviation that a normal approximation alone calls one.
 fn unproved(z: &ZTest, inequality: Option<Inequality>, level: f64) -> MeanJudgement {
     let what = match inequality {
         None => "no bound of the second moment of this law is known, and none of its values".to_owned(),
@@ -95,8 +95,8 @@ fn unproved(z: &ZTest, inequality: Option<Inequality>, level: f64) -> MeanJudgem
         }
     };
     let reason = format!(
-        "not testable at this N: differs from the reference by the sample's word alone, p = {}, level {level:.1e} ({}), which events \
-         that the sample lacks could make up for; {what}",
+        "not testable at this N: only a normal approximation says that it differs from the reference, p = {}, level {level:.1e} ({}), \
+         and events that the sample lacks, or has one too many of, could make up for that; {what}",
         p_value_text(z.p),
         z.name
     );

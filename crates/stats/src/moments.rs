@@ -230,13 +230,11 @@ impl Moments {
     #[must_use]
     pub fn sums_about(&self, c: f64) -> Option<[f64; 3]> {
         let (n, d) = (self.count as f64, self.mean - c);
-        (self.count > 0).then(|| {
-            [
-                self.m2 + n * d * d,
-                self.m3 + d * (3.0 * self.m2 + n * d * d),
-                self.m4 + d * (4.0 * self.m3 + d * (6.0 * self.m2 + n * d * d)),
-            ]
-        })
+        (self.count > 0).then_some([
+            self.m2 + n * d * d,
+            self.m3 + d * (3.0 * self.m2 + n * d * d),
+            self.m4 + d * (4.0 * self.m3 + d * (6.0 * self.m2 + n * d * d)),
+        ])
     }
 
     /// Least value; `None` if there are none.

@@ -1,6 +1,6 @@
 //! The z-test of a mean, where N is large enough for the shape of the law and for the bias that should show.
 
-use crate::approximation::NormalApproximation;
+use crate::approximation::{MOST_OF_ONE, NormalApproximation};
 use crate::evidence::{MeanJudgement, relative};
 use crate::moments::Moments;
 use crate::normal::upper_quantile;
@@ -15,9 +15,9 @@ pub(crate) struct ZTest {
     pub(crate) detectable: Option<f64>,
     /// The N that its shape and its power ask for.
     pub(crate) samples_needed: f64,
-    /// Whether variance and shape are those of the law. A sample's own are blind to what that sample lacks: they agree, and do not
-    /// reject.
-    pub(crate) is_of_the_law: bool,
+    /// Whether it may reject: variance and shape are those of the law, and no single sample makes up much of the deviation. A
+    /// sample's own are blind to what that sample lacks: they agree, and do not reject.
+    pub(crate) may_reject: bool,
     /// What the standard error is, in words.
     pub(crate) name: &'static str,
 }
@@ -86,11 +86,16 @@ pub(crate) fn z_test(
     }
     let error = (variance / n).sqrt();
     let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
+    let extremes = [measured.minimum(), measured.maximum()];
+    let greatest =
+        extremes.into_iter().flatten().fold(0.0_f64, |greatest, x| greatest.max((x - reference.mean).abs()));
     Ok(ZTest {
         p: NormalApproximation::p_value(deviation / error),
         detectable: relative(reach * error + 2.0 * reference.allowance(), reference),
         samples_needed,
-        is_of_the_law: closed_variance.is_some() && closed_shape.is_some(),
+        may_reject: closed_variance.is_some()
+            && closed_shape.is_some()
+            && greatest <= MOST_OF_ONE * n * error,
         name: match (closed_variance.is_some(), closed_shape.is_some()) {
             (true, true) => "z with the closed-form standard error",
             (true, false) => "z with the closed-form standard error, shape from the sample",

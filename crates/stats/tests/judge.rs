@@ -251,6 +251,23 @@ fn a_sample_alone_rejects_nothing() {
     }
 }
 
+/// A law whose moments allow a normal approximation may still have a value so rare and so large that it decides alone.
+#[test]
+fn one_rare_value_is_no_rejection() {
+    // Uniform of variance 1, and 1000 with probability 2e-9: skewness²/N = 4e-7, kurtosis/N = 0.02.
+    let n = 100_000_u32;
+    let central = [1.002, 2.0, 1.8 + 2000.0].map(Some);
+    let reference =
+        Reference { moments: Some(ClosedMoments::from_central(1.0, &central)), ..Reference::exact(1.0) };
+    let usual = |shift: f64| stratified(n, |u| 1.0 + shift + 3f64.sqrt() * (2.0 * u - 1.0));
+    assert_eq!(judge(&usual(0.0), &reference, ALPHA).sound, Some(true));
+    assert_eq!(judge(&usual(0.018), &reference, ALPHA).sound, Some(false), "a bias of 5.7 standard errors");
+    let mut lucky = usual(0.0);
+    lucky.push(2000.0);
+    let verdict = judge(&lucky, &reference, ALPHA);
+    assert!(verdict.mean_z.unwrap() > 6.0 && verdict.sound.is_none(), "{}", verdict.reason);
+}
+
 #[test]
 fn a_lower_bound_alone_is_a_bound() {
     let reference = Reference { scores: NEVER_NEGATIVE, ..Reference::exact(1.0) };
