@@ -110,8 +110,7 @@ fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
 }
 
 fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
-    let kind = MediumKind::Vdb { file: volume.file.clone(), grid: volume.grid.clone(), scale: volume.scale };
-    let (medium, bounds) = run.media.build(&MediumSpec { kind, bounds: None }, "medium")?;
+    let (medium, bounds) = run.media.build(&volume.medium(), "medium")?;
     let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 3))?;
     let majorant =
         medium.upper_bound().ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;
