@@ -55,6 +55,9 @@ pub(crate) struct ReportArguments {
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Refuse a volume in which more look-ups are to be expected
+    #[arg(long, value_name = "NUMBER", requires = "vdb", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -71,6 +74,7 @@ impl Default for ReportArguments {
             scale: 1.0,
             out: None,
             seed: 1,
+            budget: 1e11,
             threads: None,
         }
     }
@@ -88,6 +92,9 @@ pub(crate) struct EstimateArguments {
     /// Instead of the spec's seed
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -117,6 +124,9 @@ pub(crate) struct AdviseArguments {
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -143,6 +153,9 @@ pub(crate) struct RenderArguments {
     /// Instead of the scene's seed
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,

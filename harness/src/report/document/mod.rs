@@ -14,6 +14,7 @@ pub use heat_map::{Content, HeatMap, Numbers, Panel};
 pub use table::{Cell, Column, Table};
 
 use super::result::Claim;
+use crate::budget::Budget;
 use crate::result::Provenance;
 use crate::spec::{MediumKind, MediumSpec, NegativeVoxels};
 use serde::Serialize;
@@ -51,6 +52,8 @@ pub struct Options {
     pub threads: usize,
     /// A volume to be studied as well; only some reports take one.
     pub vdb: Option<Volume>,
+    /// Of the look-ups in that volume.
+    pub budget: Budget,
 }
 
 /// A whole report. All its texts are plain: writers escape what their format needs, and typeset σ_t and its like.
