@@ -33,13 +33,14 @@ impl Budget {
     }
 }
 
-/// What an estimate spends beside a look-up: a variate, a logarithm and a few branches take 8 to 12 ns, and what puts them together
-/// as much again (`cargo bench --bench lookups`).
+/// What an estimate spends beside a look-up: a variate, a logarithm and a few branches take 8 to 12 ns, and
+/// what puts them together as much again (`cargo bench --bench lookups`).
 const BESIDE: f64 = 20e-9;
 /// An hour \[s\].
 const LONG: f64 = 3600.0;
 
-/// A warning where so many look-ups, of `seconds` each, take more than an hour on the threads of the current pool.
+/// A warning where so many look-ups, of `seconds` each, take more than an hour on the threads of the current
+/// pool.
 #[must_use]
 pub fn patience(lookups: f64, seconds: f64) -> Option<String> {
     let threads = rayon::current_num_threads() as f64;
@@ -53,7 +54,8 @@ pub fn patience(lookups: f64, seconds: f64) -> Option<String> {
     })
 }
 
-/// CPU seconds of a look-up of a profile, measured: the least of a few rounds, each over distances that jump about as those of a walk do.
+/// CPU seconds of a look-up of a profile, measured: the least of a few rounds, each over distances that jump
+/// about as those of a walk do.
 #[must_use]
 pub fn seconds_per_lookup(profile: &AnyProfile) -> f64 {
     profile.with(Time)

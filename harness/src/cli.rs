@@ -21,7 +21,8 @@ pub(crate) enum Command {
     Report(ReportArguments),
     /// Measure one experiment, or a sweep of them, given as JSON; the result goes to standard output
     Estimate(EstimateArguments),
-    /// Say which estimator of transmittance along rays to use in a medium; a table on standard error, JSON on standard output
+    /// Say which estimator of transmittance along rays to use in a medium; a table on standard error, JSON on
+    /// standard output
     Advise(AdviseArguments),
     /// Render a scene, given as JSON, into images and statistics
     Render(RenderArguments),
@@ -103,7 +104,8 @@ pub(crate) struct EstimateArguments {
 /// Arguments of `advise`.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct AdviseArguments {
-    /// A medium as in an experiment; or a scene without scattering, whose camera's rays are then used; - reads standard input
+    /// A medium as in an experiment; or a scene without scattering, whose camera's rays are then used; - reads
+    /// standard input
     #[arg(value_name = "MEDIUM.json", required_unless_present = "vdb", conflicts_with = "vdb")]
     pub medium: Option<PathBuf>,
     /// Instead, an OpenVDB fog volume

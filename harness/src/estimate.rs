@@ -76,7 +76,8 @@ pub(crate) fn read(path: &Path, stdin: &mut dyn Read) -> Result<String, Failure>
     std::fs::read_to_string(path).map_err(Failure::refused)
 }
 
-/// All experiments of a request, none of which is drawn before all are known to be lawful and together within the budget.
+/// All experiments of a request, none of which is drawn before all are known to be lawful and together within
+/// the budget.
 fn prepare(request: &Request, budget: Budget) -> Result<Vec<Prepared>, Failure> {
     let library = MediumLibrary::default();
     match request {

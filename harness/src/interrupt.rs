@@ -1,17 +1,19 @@
 //! Interrupts: whoever works asks whether to go on.
 //!
-//! The first signal is a request. Batches, passes and checks ask for it with [`check`] and return, so that temporary files are removed as
-//! on any other way out. Work that can end early with a result says so with [`stop_gently`], and asks when it has something whole. What has
-//! not come to an end [`GRACE`] after the request, or at a second signal, is ended where it is: then, and only then, the files and folders
-//! that are registered under a [`shield`] are removed from here.
+//! The first signal is a request. Batches, passes and checks ask for it with [`check`] and return, so that
+//! temporary files are removed as on any other way out. Work that can end early with a result says so with
+//! [`stop_gently`], and asks when it has something whole. What has not come to an end [`GRACE`] after the
+//! request, or at a second signal, is ended where it is: then, and only then, the files and folders that are
+//! registered under a [`shield`] are removed from here.
 //!
-//! Only the program [installs](install) this; a program that embeds the library keeps its own handlers, and no request is ever made.
+//! Only the program [installs](install) this; a program that embeds the library keeps its own handlers, and no
+//! request is ever made.
 
 use crate::{Failure, INTERRUPTED};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
 
@@ -25,10 +27,13 @@ const ATTEMPTS: usize = 100;
 static REQUESTS: AtomicUsize = AtomicUsize::new(0);
 /// Pieces of work that stop gently.
 static GENTLE: AtomicUsize = AtomicUsize::new(0);
+/// Whether the end has begun.
+static ENDING: AtomicBool = AtomicBool::new(false);
 static TEMPORARY: Mutex<Vec<Temporary>> = Mutex::new(Vec::new());
 
-/// Serves SIGHUP, SIGINT, SIGQUIT and SIGTERM, each by itself. One that was ignored when the program started stays ignored, as `nohup` and
-/// background jobs of a shell want it; that is known on Linux only, elsewhere all are served.
+/// Serves SIGHUP, SIGINT, SIGQUIT and SIGTERM, each by itself. One that was ignored when the program started
+/// stays ignored, as `nohup` and background jobs of a shell want it; that is known on Linux only, elsewhere all
+/// are served.
 ///
 /// # Errors
 /// If the system refuses some: the others are served.
@@ -63,7 +68,8 @@ pub fn install() -> Result<(), String> {
     ctrlc::try_set_handler(request).map_err(|error| error.to_string())
 }
 
-/// The signals, a bit each from the lowest, that a process ignores: `SigIgn` of its `/proc/PID/status` (proc_pid_status(5)).
+/// The signals, a bit each from the lowest, that a process ignores: `SigIgn` of its `/proc/PID/status`
+/// (proc_pid_status(5)).
 #[cfg(unix)]
 fn ignored(status: &str) -> u64 {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -88,8 +94,19 @@ fn request() {
     }
 }
 
+/// Whether the process ends by who asks this first: it tells that it was interrupted, nobody else does.
+pub(crate) fn ends_here() -> bool {
+    !ENDING.swap(true, Ordering::SeqCst)
+}
+
 /// Removes what is registered, and ends the process.
 fn end_at_once() -> ! {
+    if !ends_here() {
+        // The program is on its way out.
+        loop {
+            std::thread::park();
+        }
+    }
     // It is never released: from here on nothing is created under a shield, and nothing is put in place.
     let shield = shield();
     clear(&shield.0);
@@ -140,8 +157,9 @@ impl Drop for GentleStop {
     }
 }
 
-/// Keeps the end of the process waiting as long as it lives: for steps that belong together, such as the creation of a temporary file
-/// and its registration, or two renames. A thread must not ask for a second one while it holds one.
+/// Keeps the end of the process waiting as long as it lives: for steps that belong together, such as the
+/// creation of a temporary file and its registration, or two renames. A thread must not ask for a second one
+/// while it holds one.
 #[must_use]
 pub fn shield() -> Shield {
     Shield(TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner))

@@ -63,9 +63,13 @@ pub fn run(
     match outcome {
         Ok(code) => code,
         Err(failure) => {
-            // The line of a progress bar that was given up has no end yet. Nobody is left to tell if standard error is closed.
-            let gap = if failure == Failure::Interrupted && terminal.progress { "\n" } else { "" };
-            let _ = writeln!(stderr, "{gap}{failure}");
+            let interrupted = failure == Failure::Interrupted;
+            // The line of a progress bar that was given up has no end yet. Nobody is left to tell if standard
+            // error is closed.
+            let gap = if interrupted && terminal.progress { "\n" } else { "" };
+            if !interrupted || interrupt::ends_here() {
+                let _ = writeln!(stderr, "{gap}{failure}");
+            }
             failure.code()
         }
     }

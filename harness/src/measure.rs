@@ -54,8 +54,8 @@ pub struct Draws {
 /// Draws estimates. `advance` is told how many samples were added.
 ///
 /// # Errors
-/// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), an estimate is not finite, or an
-/// interrupt asked to stop.
+/// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), an estimate is
+/// not finite, or an interrupt asked to stop.
 pub fn measure<G: Field, E: Estimator<G>>(
     lawful: Lawful<G, E>,
     draws: Draws,

@@ -29,7 +29,8 @@ pub struct GridInfo {
     pub instance_of: Option<String>,
     /// The grid's class as the file spells it: `fog volume`, `level set`, ...; none where the file states none.
     ///
-    /// Values of a level set are distances, those of a staggered grid sit on faces: neither is a volume, and both are refused.
+    /// Values of a level set are distances, those of a staggered grid sit on faces: neither is a volume, and
+    /// both are refused.
     pub class: Option<String>,
     /// The number of active voxels that the file states, tiles counted with their volume.
     pub file_voxel_count: Option<i64>,
@@ -173,8 +174,8 @@ pub(crate) fn select<'a>(grids: &'a [Descriptor], name: Option<&str>) -> Result<
     }
 }
 
-/// The grid that can be meant where none is asked for: of all float grids, whatever their trees and also where they are instances, the only
-/// one, or the only one that is called [`USUAL_NAME`].
+/// The grid that can be meant where none is asked for: of all float grids, whatever their trees and also where
+/// they are instances, the only one, or the only one that is called [`USUAL_NAME`].
 fn usual(grids: &[Descriptor]) -> Result<&Descriptor, VdbError> {
     let floats: Vec<&Descriptor> =
         grids.iter().filter(|grid| matches!(grid.info.value_type.as_str(), "float" | "double")).collect();
@@ -192,8 +193,8 @@ fn usual(grids: &[Descriptor]) -> Result<&Descriptor, VdbError> {
     }
 }
 
-/// Whether the values of a grid of this class are no property of its voxels. OpenVDB compares classes trimmed and in lower case, and takes
-/// every other text for an unknown class.
+/// Whether the values of a grid of this class are no property of its voxels. OpenVDB compares classes trimmed
+/// and in lower case, and takes every other text for an unknown class.
 fn is_no_volume(class: &str) -> bool {
     matches!(class.trim().to_lowercase().as_str(), "level set" | "staggered")
 }

@@ -24,9 +24,9 @@ pub fn grids(bytes: &[u8]) -> Result<Vec<GridInfo>, VdbError> {
 /// Of several grids with one name, `density[1]` means the second and `density` the first.
 ///
 /// # Errors
-/// Everything that [`VdbError`] lists: the grid is missing, ambiguous, of another type, a level set, damaged, or uses a part of the format that is
-/// not supported. A grid whose number of active voxels is not the one in its metadata, or that has a value which is not
-/// finite, is an error too.
+/// Everything that [`VdbError`] lists: the grid is missing, ambiguous, of another type, a level set, damaged,
+/// or uses a part of the format that is not supported. A grid whose number of active voxels is not the one in
+/// its metadata, or that has a value which is not finite, is an error too.
 pub fn read_float_grid(bytes: &[u8], name: Option<&str>) -> Result<VoxelGrid, VdbError> {
     read_within(bytes, name, &mut Budget::for_file(bytes.len()))
 }

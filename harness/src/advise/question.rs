@@ -36,7 +36,8 @@ pub(super) struct Question {
     majorant: Option<f64>,
 }
 
-/// Whether the picture of a scene is the background, attenuated: then estimates of transmittance along camera rays are all that it costs.
+/// Whether the picture of a scene is the background, attenuated: then estimates of transmittance along camera
+/// rays are all that it costs.
 ///
 /// # Errors
 /// If light is scattered, or may be.

@@ -33,7 +33,8 @@ struct Expected {
 pub(super) fn rays(question: &Question, budget: Budget) -> Result<(RaySet, Option<String>), Failure> {
     let set = question.rays()?;
     let (rays, depth) = (set.rays.len() as f64, set.depth());
-    // A trial of each and a measurement of the best, drawn and counted; pilots make a few dozen look-ups per unit of depth.
+    // A trial of each and a measurement of the best, drawn and counted; pilots make a few dozen look-ups per
+    // unit of depth.
     let estimates = |effort: Effort| (effort.samples + effort.counted) as f64;
     let trial = estimates(TRIAL) * (TRIAL_RAYS as f64 / rays).min(1.0);
     let measured = (BEST + 1) as f64 * estimates(MEASUREMENT);

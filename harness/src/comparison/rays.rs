@@ -31,8 +31,8 @@ pub struct RaySet {
 }
 
 impl RaySet {
-    /// The optical thickness of the majorant, summed over the rays, each counted as 1 at least: what an estimate on each of them looks up, to a
-    /// small factor.
+    /// The optical thickness of the majorant, summed over the rays, each counted as 1 at least: what an
+    /// estimate on each of them looks up, to a small factor.
     #[must_use]
     pub fn depth(&self) -> f64 {
         self.depths().map(|depth| depth.max(1.0)).sum()

@@ -13,7 +13,8 @@ impl Default for Exposure {
 }
 
 impl Exposure {
-    /// The power of two that shows the luminance `white` at white or less than one stop below: 1 where there is no light.
+    /// The power of two that shows the luminance `white` at white or less than one stop below: 1 where there is
+    /// no light.
     #[must_use]
     pub fn of_white(white: f64) -> Self {
         if white > 0.0 && white.is_finite() { Self((-white.log2().ceil()).exp2()) } else { Self::default() }

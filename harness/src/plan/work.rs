@@ -28,8 +28,8 @@ pub enum Expected {
     AtMost(f64),
 }
 
-/// What is known of a ray: `from` its entry \[length\], over `length`, σ_t at most `upper_bound` where one is declared, smooth but
-/// in `breakpoints` places.
+/// What is known of a ray: `from` its entry \[length\], over `length`, σ_t at most `upper_bound` where one is
+/// declared, smooth but in `breakpoints` places.
 #[derive(Clone, Copy, Debug)]
 pub struct RayKnown {
     /// The distance of its start from the origin in which edges are given.
@@ -184,14 +184,16 @@ impl Work {
         }
     }
 
-    /// Of so many estimates, each with so many look-ups of its own; one that looks up nothing costs as much as one that does once.
+    /// Of so many estimates, each with so many look-ups of its own; one that looks up nothing costs as much as
+    /// one that does once.
     #[must_use]
     pub fn total(&self, estimates: u64, lookups: f64) -> f64 {
         self.preparation + estimates as f64 * lookups.max(1.0)
     }
 }
 
-/// Expected look-ups of jittered ratio tracking below a majorant of this optical thickness: (e^h − 1)/h in each stratum of thickness h ≤ ε.
+/// Expected look-ups of jittered ratio tracking below a majorant of this optical thickness: (e^h − 1)/h in each
+/// stratum of thickness h ≤ ε.
 fn strata(depth: f64, epsilon: f64) -> f64 {
     let strata = (depth / epsilon).ceil().max(1.0);
     let h = depth / strata;
@@ -213,7 +215,8 @@ impl RayKnown {
         }
     }
 
-    /// The optical thickness of an extinction between two distances from the origin, as far as they are on the ray.
+    /// The optical thickness of an extinction between two distances from the origin, as far as they are on the
+    /// ray.
     fn depth_in(self, cell: &[f64], extinction: f64) -> f64 {
         let width = cell[1].min(self.from + self.length) - cell[0].max(self.from);
         if width > 0.0 && extinction != 0.0 { extinction * width } else { 0.0 }

@@ -1,11 +1,12 @@
-//! A small image of the same scene, drawn beside the one that is asked for: what it tells depends on the scene alone, not on seed, samples,
-//! passes or threads.
+//! A small image of the same scene, drawn beside the one that is asked for: what it tells depends on the scene
+//! alone, not on seed, samples, passes or threads.
 //!
 //! **Exposure.** White must not follow noise, nor a lamp that the camera sees. So (1) the pilot has streams and a size of its own. (2) Pixels
-//! in which the camera sees an emitting surface are left out: its radiance says nothing of what it lights. (3) The luminance is averaged over
-//! blocks of pixels, some 256 samples each, and only blocks with light count. (4) White is the 95th percentile of these blocks, but at most
-//! [`HEADROOM`] times their median: whatever is seen of lamps by mirrors, of a bright window, or of samples of a heavy tail, if it
-//! covers less than half of what is lit, can darken the picture by no more than that.
+//! in which the camera sees an emitting surface are left out: its radiance says nothing of what it lights. (3)
+//! The luminance is averaged over blocks of pixels, some 256 samples each, and only blocks with light count.
+//! (4) White is the 95th percentile of these blocks, but at most [`HEADROOM`] times their median: whatever is
+//! seen of lamps by mirrors, of a bright window, or of samples of a heavy tail, if it covers less than half of
+//! what is lit, can darken the picture by no more than that.
 
 use super::painting::moments;
 use crate::Failure;
@@ -62,7 +63,8 @@ pub(super) fn reduced(spec: &SceneSpec, side: u32, samples: u32) -> Result<Scene
 fn pilot(spec: &SceneSpec) -> Result<SceneSpec, Failure> {
     let mut pilot = reduced(spec, SIDE, SAMPLES)?;
     if let IntegratorSpec::Vpl(vpl) = &mut pilot.integrator {
-        // All of the light is what a path tracer finds, too, and its cost does not grow with the number of light paths.
+        // All of the light is what a path tracer finds, too, and its cost does not grow with the number of
+        // light paths.
         if vpl.component == ComponentSpec::All {
             let tracer = PathTracerSpec::of_all_lengths(vpl.transport.clone());
             pilot.integrator = IntegratorSpec::PathTracer(tracer);
@@ -73,7 +75,8 @@ fn pilot(spec: &SceneSpec) -> Result<SceneSpec, Failure> {
     Ok(pilot)
 }
 
-/// For each pixel, row by row, whether an emitting surface is the first thing that it shows, in any of 4 x 4 points.
+/// For each pixel, row by row, whether an emitting surface is the first thing that it shows, in any of 4 x 4
+/// points.
 fn emitters_in_pixels<C: Spectrum>(radiant: &Radiant<C>, camera: &Camera) -> Vec<bool> {
     let emits = |pixel: [u32; 2]| {
         (0..16_u8).any(|i| {

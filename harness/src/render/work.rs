@@ -1,14 +1,17 @@
 //! What an image is expected to look up, before its first pixel.
 //!
-//! Where the rates of the integrator tell, they are asked: an estimator of transmittance looks up its rate times the chord of the bounds, and
-//! where collisions end it, times the part of the chord that light passes. How often a walk collides only walks tell: a few of them are
-//! sent, each cut after so many collisions that all together take a fraction of a second. A connection counts as a look-up.
+//! Where the rates of the integrator tell, they are asked: an estimator of transmittance looks up its rate
+//! times the chord of the bounds, and where collisions end it, times the part of the chord that light passes.
+//! How often a walk collides only walks tell: a few of them are sent, each cut after so many collisions that
+//! all together take a fraction of a second. A connection counts as a look-up.
 
 use super::pilot::reduced;
+use super::tile::Tile;
 use super::{Moments, moments};
 use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::plan::{
-    AnyMedium, AnyProfile, Expected, Field, FieldJob, KnownField, MediumLibrary, RayKnown, ScenePlan, Work,
+    AnyMedium, AnyProfile, Expected, Field, FieldJob, KnownField, MediumLibrary, RayKnown, ScenePlan,
+    Spectra, Work,
 };
 use crate::spec::{IntegratorSpec, RayEstimatorSpec, SceneSpec, SingleScatteringSpec, VplSpec};
 use crate::{Failure, interrupt};
@@ -25,7 +28,10 @@ const MOST: f64 = 1e7;
 /// Light paths that stand for all of a set, and flights for those of a split.
 const LIGHT_PATHS: u32 = 64;
 const SPLITS: u32 = 4;
-/// Memory for virtual point lights \[bytes\].
+const MEAN_CELLS: u32 = 16;
+/// Of more look-ups the rate is the reason, of fewer the number of samples.
+const MOST_ORDINARY: f64 = 1e3;
+/// Memory for the pixels, and for virtual point lights \[bytes\].
 const MOST_MEMORY: f64 = (1_u64 << 34) as f64;
 
 /// How long an image may take.
@@ -54,6 +60,13 @@ pub(super) fn check(
     let because = |each: f64| format!("{columns} x {rows} pixels, {samples} samples of {each:.3e} each");
     budget.check("samples_per_pixel", paths, &because(1.0))?;
 
+    let bytes = match &plan.spectra {
+        Spectra::Gray(_) => Tile::<f64>::BYTES_PER_PIXEL,
+        Spectra::Colour(_) => Tile::<DVec3>::BYTES_PER_PIXEL,
+        Spectra::Separate(_) => 3 * Tile::<f64>::BYTES_PER_PIXEL,
+    };
+    in_memory("camera.resolution", pixels, "pixels", bytes)?;
+
     let chords = Chords::of(plan)?;
     let (key, lookups) = match &spec.integrator {
         IntegratorSpec::Transmittance { estimator } => {
@@ -70,15 +83,30 @@ pub(super) fn check(
                     let lookups = walks.virtual_lights(vpl, (f64::from(samples), paths), shadow)?;
                     ("integrator.light_paths", lookups)
                 }
+                _ if shadow > MOST_ORDINARY => ("integrator.estimator", paths * walks.each),
                 _ => ("integrator.sigma_samp", paths * walks.each),
             }
         }
     };
     let each = lookups / paths;
-    let key = if each > 1e3 { key } else { "samples_per_pixel" };
+    let key = if each > MOST_ORDINARY { key } else { "samples_per_pixel" };
     budget.check(key, lookups.max(paths), &because(each))?;
     let seconds = chords.profile.as_ref().map_or(0.0, seconds_per_lookup);
     Ok(if length == Length::Whole { patience(lookups, seconds) } else { None })
+}
+
+/// Whether so many of something, of so many bytes each, may be kept in memory.
+fn in_memory(key: &str, count: f64, what: &str, bytes: usize) -> Result<(), Failure> {
+    let needed = count * bytes as f64;
+    if needed <= MOST_MEMORY {
+        return Ok(());
+    }
+    let gib = |bytes: f64| bytes / f64::from(1_u32 << 30);
+    Err(Failure::refused(format!(
+        "{key}: {count:.1e} {what} take {:.0} GiB of memory, more than {:.0}",
+        gib(needed),
+        gib(MOST_MEMORY)
+    )))
 }
 
 /// Camera rays in the bounds of the medium.
@@ -198,7 +226,10 @@ impl Walks {
         let mut scale = 1.0;
         match &mut pilot.integrator {
             IntegratorSpec::PathTracer(tracer) => tracer.max_vertices = tracer.max_vertices.min(most as u32),
-            IntegratorSpec::Vpl(vpl) => vpl.light_paths = vpl.light_paths.min(LIGHT_PATHS),
+            IntegratorSpec::Vpl(vpl) => {
+                vpl.light_paths = vpl.light_paths.min(LIGHT_PATHS);
+                vpl.local_mean_cells = vpl.local_mean_cells.min(MEAN_CELLS);
+            }
             IntegratorSpec::LineSplitting { splits, .. } => {
                 scale = f64::from(*splits) / f64::from((*splits).min(SPLITS));
                 *splits = (*splits).min(SPLITS);
@@ -209,9 +240,9 @@ impl Walks {
             walk.max_collisions = walk.max_collisions.min(most);
         }
         // Where one shadow ray takes that long nobody waits for a pilot.
-        let drawn = if shadow > MOST / WALKS { Err(Failure::Interrupted) } else { draw(&pilot, library) };
+        let drawn = if shadow > MOST / WALKS { None } else { draw(&pilot, library).ok() };
         interrupt::check()?;
-        let Ok(drawn) = drawn else {
+        let Some(drawn) = drawn else {
             // What is wrong with the scene, if anything is, the image itself will say.
             return Ok(Self { each: shadow.max(rate * chords.mean * chords.passed), lights: 1.0 });
         };
@@ -231,11 +262,7 @@ impl Walks {
     fn virtual_lights(&self, vpl: &VplSpec, (sets, paths): (f64, f64), shadow: f64) -> Result<f64, Failure> {
         let light_paths = f64::from(vpl.light_paths);
         let lights = self.lights * light_paths;
-        if lights * size_of::<Vpl<DVec3>>() as f64 > MOST_MEMORY {
-            return Err(Failure::refused(format!(
-                "integrator.light_paths: {lights:.1e} virtual point lights are to be expected, more than 16 GiB hold"
-            )));
-        }
+        in_memory("integrator.light_paths", lights, "virtual point lights", size_of::<Vpl<DVec3>>())?;
         // The pilot's pixels were as many as its light paths: neither had more look-ups than both together.
         let traced = sets * light_paths * self.each;
         Ok(traced + paths * (self.each + f64::from(vpl.eye_samples) * lights * shadow.max(1.0)))

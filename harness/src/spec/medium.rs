@@ -50,7 +50,8 @@ pub enum MediumKind {
     },
 }
 
-/// What is done with voxels below 0: densities have none, and of what is none a grid without a class gives no other sign.
+/// What is done with voxels below 0: densities have none, and of what is none a grid without a class gives no
+/// other sign.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NegativeVoxels {
     /// The volume is refused.

@@ -188,7 +188,30 @@ fn whatever_runs_ends_without_a_result_and_says_so() {
     }
 }
 
-/// What is ignored when the program starts: hang-ups under `nohup`, the interrupts of the keyboard in the background of a shell.
+#[cfg(target_os = "linux")]
+#[test]
+fn more_than_an_hour_is_said_before_it_begins() {
+    let experiment = r#"{ "profile": { "kind": "constant", "sigma_t": 1, "length": 1 },
+        "estimator": { "kind": "ray_marching", "steps": 100000, "jitter": true }, "samples": 10000000000, "seed": 1 }"#;
+    let mut child = Command::new(env!("CARGO_BIN_EXE_harness"))
+        .args(["estimate", "-", "--budget", "1e16", "--threads", "1"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(experiment.as_bytes()).expect("it reads");
+    let mut stderr = BufReader::new(child.stderr.take().expect("a pipe"));
+    let mut line = String::new();
+    stderr.read_line(&mut line).expect("it says so");
+    assert!(line.starts_with("warning: this will take about ") && line.contains("1.0e15 look-ups"), "{line}");
+    send("-INT", &child);
+    wait_for("the end", || child.try_wait().expect("a state").is_some());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+}
+
+/// What is ignored when the program starts: hang-ups under `nohup`, the interrupts of the keyboard in the
+/// background of a shell.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
