@@ -1,7 +1,7 @@
 //! `harness verify`: every law over every estimator, medium and hard case.
 
 use crate::cli::VerifyArguments;
-use crate::{DONE, Environment, Failure, UNSOUND};
+use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
 use fairflight_laws::{Check, CheckResult, Effort, Kind, catalogue};
 use fairflight_stats::sidak_level;
 use rayon::prelude::*;
@@ -23,16 +23,17 @@ pub(crate) fn run(
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     let bar = environment.progress(checks.len() as u64, "verifying");
     let results: Vec<CheckResult> = environment.on_threads(arguments.threads, || {
-        Ok(checks
+        checks
             .par_iter()
             // One check a task: some take a thousand times as long as others.
             .with_max_len(1)
             .map(|check| {
+                interrupt::check()?;
                 let result = check.run(effort, arguments.seed, alpha);
                 bar.inc(1);
-                result
+                Ok(result)
             })
-            .collect())
+            .collect()
     })?;
     bar.finish_and_clear();
     let text = table(&checks, &results, alpha, environment, arguments.seed);
