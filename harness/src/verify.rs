@@ -2,7 +2,7 @@
 
 use crate::cli::VerifyArguments;
 use crate::result::{Provenance, number};
-use crate::{DONE, Environment, Failure, UNSOUND};
+use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
 use fairflight_laws::{Check, CheckResult, Effort, FAMILY_LEVEL, FAMILY_SIZE, Kind, catalogue, check_level};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -18,16 +18,17 @@ pub(crate) fn run(
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     let bar = environment.progress(checks.len() as u64, "verifying");
     let results: Vec<CheckResult> = environment.on_threads(arguments.threads, || {
-        Ok(checks
+        checks
             .par_iter()
             // One check a task: some take a thousand times as long as others.
             .with_max_len(1)
             .map(|check| {
+                interrupt::check()?;
                 let result = check.run(effort, arguments.seed, check_level());
                 bar.inc(1);
-                result
+                Ok(result)
             })
-            .collect())
+            .collect()
     })?;
     bar.finish_and_clear();
     let provenance = environment.provenance(arguments.seed);

@@ -67,6 +67,7 @@ media!(
     points,
     paths,
     vpl,
+    exact,
 );
 
 #[test]

@@ -5,6 +5,7 @@
 //! * [`spectral`]: the law of free flight for each of several wavelengths.
 //! * [`paths`]: radiance against quadrature, slabs and closed forms.
 //! * [`vpl`]: virtual point lights, what bounding them takes away, and light among surfaces.
+//! * [`exact`]: what a decision, a density or a closed form must be, without chance.
 //! * [`scores`]: which values an estimate can take, derived from what is known of a profile.
 //! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
 //! * [`hard_cases()`]: numerically hard inputs with their exact answers.
@@ -25,6 +26,7 @@ mod truth;
 mod twins;
 
 pub mod collision;
+pub mod exact;
 pub mod freeflight;
 pub mod lookups;
 pub mod paths;

@@ -8,6 +8,7 @@
 //! The crate knows numbers only: no light transport, no files, clocks, threads or random sources.
 
 mod evidence;
+mod inequalities;
 mod judge;
 mod mean_test;
 mod normal_test;

@@ -5,7 +5,7 @@ use crate::bernstein::Bernstein;
 use crate::binomial_inference::trials_needed;
 use crate::normal::upper_quantile;
 use crate::policy::POWER;
-use crate::reference::{Reference, Scores};
+use crate::reference::{Certainty, Reference, Scores};
 
 /// The N from which on [`judge`](crate::judge()) at the level `alpha` tests the mean and finds a relative bias of `bias` with
 /// probability [`POWER`].
@@ -51,14 +51,23 @@ pub(crate) fn for_power(test: &NormalApproximation, reference: &Reference, varia
     }
 }
 
-/// The law of bounded samples for Bernstein's inequality. Where the variance is unknown it is at most
-/// (maximum - mean)(mean - minimum) (Bhatia and Davis 2000).
+/// What Bernstein's inequality needs to know of bounded samples.
+///
+/// Where the variance is unknown it is at most (maximum - mean)(mean - minimum) (Bhatia and Davis 2000), and a quarter of the square
+/// of their distance whatever the mean.
 pub(crate) fn bernstein_law(reference: &Reference) -> Option<Bernstein> {
     let Scores::Bounded { minimum, maximum } = reference.scores else { return None };
+    let range = maximum - minimum;
+    if !range.is_finite() {
+        return None;
+    }
+    if matches!(reference.certainty, Certainty::Estimated { .. }) {
+        return Some(Bernstein { variance: 0.25 * range * range, bound: range });
+    }
     let (below, above) = ((reference.mean - minimum).max(0.0), (maximum - reference.mean).max(0.0));
     let greatest = below * above;
-    let variance =
-        reference.closed_moments().and_then(|moments| moments.variance).map_or(greatest, |v| v.min(greatest));
+    let closed = reference.closed_moments().and_then(|moments| moments.variance);
+    let variance = closed.map_or(greatest, |v| v.min(greatest));
     Some(Bernstein { variance, bound: below.max(above) })
 }
 

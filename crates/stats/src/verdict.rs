@@ -16,8 +16,10 @@ pub enum MeanTest {
     Binomial,
     /// A z-score, normal to a stated accuracy.
     Normal,
-    /// Bernstein's inequality.
+    /// Bernstein's inequality, whose power is known.
     Bernstein,
+    /// A rejection by an inequality that holds for every shape of the law.
+    Inequality,
     /// Agreement to rounding, for a law without variance.
     Rounding,
     /// Broken facts: a value that the law excludes.
@@ -39,8 +41,8 @@ pub struct Verdict {
     pub mean_p: Option<f64>,
     /// p-value of the test of the variance; `None` if there is none that holds its level.
     pub variance_p: Option<f64>,
-    /// Smallest |bias|/|reference| of the mean that this call would have rejected with probability 0.99; `None` for a
-    /// reference of zero or without a test.
+    /// Smallest |bias|/|reference| of the mean with which this call would have agreed with a probability below 0.01; `None`
+    /// for a reference of zero or without a test.
     pub detectable_relative_bias: Option<f64>,
     /// Whether mean and variance agree with the reference; `None` = not testable at this N.
     pub sound: Option<bool>,

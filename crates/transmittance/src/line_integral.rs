@@ -161,6 +161,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
                 relative_central,
                 log_relative_variance: f64::NEG_INFINITY,
                 relative_variance_error: 0.0,
+                relative_variance_bound: f64::INFINITY,
                 lookups: 0.0,
             };
         }
@@ -187,6 +188,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
             relative_central,
             log_relative_variance: relative_central[0].ln(),
             relative_variance_error: moments.error[0] / moments.value[0],
+            relative_variance_bound: f64::INFINITY,
             lookups,
         }
     }

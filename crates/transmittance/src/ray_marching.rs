@@ -81,6 +81,7 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
                 relative_central: [0.0; HIGHEST_MOMENT - 1],
                 log_relative_variance: f64::NEG_INFINITY,
                 relative_variance_error: 0.0,
+                relative_variance_bound: f64::INFINITY,
                 lookups,
             };
         }
@@ -96,6 +97,7 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
             relative_central: central.value,
             log_relative_variance: central.value[0].ln(),
             relative_variance_error: central.error[0] / central.value[0],
+            relative_variance_bound: f64::INFINITY,
             lookups,
         }
     }

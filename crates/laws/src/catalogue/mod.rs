@@ -4,6 +4,7 @@ mod cells;
 mod combs;
 mod estimators;
 mod exact;
+mod exactly;
 mod freeflight;
 mod hybrid;
 mod media;
@@ -61,6 +62,8 @@ pub enum Law {
     Bound,
     /// The squared energy of walks grows as their collisions say, by exact algebra.
     Growth,
+    /// A decision has its probability, a direction the density that is told, a closed form is what it stands for: without chance.
+    Exact,
     /// A wrong twin is rejected.
     WrongTwin,
     /// A hard case has its exact answer, or is refused where it must be.
@@ -84,6 +87,7 @@ impl Law {
             Self::Energy => "energy",
             Self::Bound => "bound",
             Self::Growth => "growth",
+            Self::Exact => "exact",
             Self::WrongTwin => "wrong_twin",
             Self::HardCase => "hard_case",
         }
@@ -106,7 +110,7 @@ pub enum Effort {
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`, `hybrid/medium/estimator`,
     /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
-    /// `phase/name`, `twin/name`, `hard/number name`.
+    /// `phase/name`, `exact/what/which`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
@@ -204,6 +208,7 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(points::point_sets());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());
+    checks.extend(exactly::without_chance());
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {

@@ -7,9 +7,7 @@ use crate::{Expectation, Kind, Refusal, Run, Truth};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, Extinction, Majorant, Vacuum};
 use fairflight_stats::Scores;
-use fairflight_transmittance::{
-    HIGHEST_MOMENT, LineIntegral, Theory, Tracking, TransmittanceEstimator, Woodcock,
-};
+use fairflight_transmittance::{LineIntegral, Theory, Tracking, TransmittanceEstimator, Woodcock};
 
 /// σ_t = 0.5 but for the second half of a ray of length 2, with a declared majorant of 1.
 #[derive(Clone, Copy, Debug)]
@@ -32,14 +30,8 @@ impl Majorant for Faulty {
 
 /// What is expected does not matter: nothing is judged before every look-up was lawful.
 fn expectation() -> Expectation {
-    let theory = Theory {
-        relative_mean: 1.0,
-        relative_central: [f64::NAN; HIGHEST_MOMENT - 1],
-        log_relative_variance: f64::NAN,
-        relative_variance_error: 0.0,
-        lookups: 1.0,
-    };
     let truth = Truth { optical_thickness: 1.0, error: 0.0 };
+    let theory = Theory::mean_only(1.0);
     Expectation { truth, theory, scores: Scores::Unbounded, lookups: LookupLaw::MeanOnly }
 }
 

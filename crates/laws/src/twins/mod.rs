@@ -7,6 +7,7 @@ mod cells;
 mod collision_weights;
 mod combs;
 mod control;
+mod exactly;
 mod freeflight;
 mod line_integral;
 mod logarithm;
@@ -115,6 +116,7 @@ pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
     all.extend(cells::twins());
     all.extend(control::twins());
+    all.extend(exactly::twins());
     all.extend(freeflight::twins());
     all.extend(spectral::twins());
     all.extend(points::twins());

@@ -225,6 +225,7 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
             relative_central,
             log_relative_variance: relative_central[0].ln(),
             relative_variance_error,
+            relative_variance_bound: f64::INFINITY,
             lookups,
         };
         let breaks = self.comb.folded_breakpoints(field, &prepared);
