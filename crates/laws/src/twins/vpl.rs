@@ -109,7 +109,7 @@ fn estimate(scene: &Local, mistake: Mistake, source: &mut Seeded) -> f64 {
 
 /// Judges the loop on a scene by the law of the right one.
 fn tried(scene: &Local, mistake: Mistake, run: Run) -> Rejection {
-    let reference = scene.reference();
+    let reference = scene.reference().with_mild_tails();
     let mut seen = scene.clone();
     if mistake == Mistake::LightTwice {
         let Some(&Source::Point { position, power }) = scene.lights.sources.first() else {
