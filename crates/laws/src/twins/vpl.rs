@@ -157,7 +157,8 @@ const THIN: f64 = 1.0;
 /// All twins of this file.
 pub(super) fn twins() -> Vec<Twin> {
     let twin = |id, text, profile, (mistake, scene, z): (Mistake, fn() -> Local, f64)| {
-        let is_skewed = [Mistake::UnboundedBehind, Mistake::SurfaceByFlight].contains(&mistake);
+        let is_skewed =
+            [Mistake::UnboundedBehind, Mistake::SurfaceByFlight, Mistake::BehindSurfaces].contains(&mistake);
         let samples = if is_skewed { MORE } else { SAMPLES };
         Twin::new("compensation", id, text, profile, (samples, Evident::Mean { z }), move |run| {
             tried(&scene(), mistake, run)
@@ -212,7 +213,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "vpl_behind_surfaces",
             "compensation vertices behind a surface, which they do not see",
             "a floor lit from both sides, lights on it and above",
-            (Mistake::BehindSurfaces, lit_from_below, 157.7),
+            (Mistake::BehindSurfaces, lit_from_below, 236.6),
         ),
         twin(
             "vpl_light_source_twice",
