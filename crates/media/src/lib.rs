@@ -37,6 +37,7 @@ mod extinction;
 mod gradient_noise;
 mod homogeneous;
 mod inside;
+mod interpolation;
 mod interval;
 mod interval_bounds;
 mod lattice_planes;
@@ -49,6 +50,7 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod rounding;
 mod spectral;
 mod voxels;
 mod watched;
@@ -68,6 +70,7 @@ pub use extinction::{
     Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
 };
 pub use homogeneous::Homogeneous;
+pub use interpolation::lerp;
 pub use interval_bounds::IntervalBounds;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
 pub use medium_bounds::{BoxBounds, Boxes};
@@ -78,6 +81,7 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use rounding::rounding_of_difference;
 pub use spectral::{
     Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
     Wavelength,
