@@ -6,6 +6,38 @@ use crate::moments::Moments;
 use crate::normal::upper_quantile;
 use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
 use crate::reference::Reference;
+use crate::sample_size::for_power;
+
+/// Skewness and excess kurtosis, and the N from which on they let a mean be taken as normal.
+struct Shape {
+    shape: Option<(f64, f64)>,
+    needed: f64,
+    origin: &'static str,
+}
+
+const OF_THE_LAW: &str = "of the law";
+
+impl Shape {
+    /// Of the law where all of it is known, else of the sample, under stricter limits.
+    fn of(measured: &Moments, reference: &Reference, test: &NormalApproximation) -> Self {
+        let closed =
+            reference.closed_moments().and_then(|moments| moments.skewness().zip(moments.excess_kurtosis()));
+        if let Some((skewness, kurtosis)) = closed {
+            let needed = test.samples_needed(skewness, kurtosis);
+            return Self { shape: closed, needed, origin: OF_THE_LAW };
+        }
+        let sample = measured.skewness().zip(measured.excess_kurtosis());
+        let needed = sample.map_or(f64::INFINITY, |(skewness, kurtosis)| {
+            test.studentised_samples_needed(skewness, kurtosis)
+        });
+        Self { shape: sample, needed, origin: if sample.is_some() { "of the sample" } else { "unknown" } }
+    }
+}
+
+/// The N from which on a normal approximation of the mean holds at `level`, by the shape of the law, or else of the sample.
+pub(crate) fn normal_samples(measured: &Moments, reference: &Reference, level: f64) -> f64 {
+    Shape::of(measured, reference, &NormalApproximation::for_level(level)).needed
+}
 
 /// A z-test for which N suffices.
 pub(crate) struct ZTest {
@@ -41,30 +73,10 @@ pub(crate) fn z_test(
         return Err(not_testable(Some(f64::INFINITY), "the variance is infinite".to_owned()));
     }
 
-    // The shape: of the law where all of it is known, else of the sample, under stricter limits.
     let test = NormalApproximation::for_level(level);
-    let closed_shape = closed.and_then(|moments| moments.skewness().zip(moments.excess_kurtosis()));
-    let sample_shape = measured.skewness().zip(measured.excess_kurtosis());
-    let (shape, needed, origin) = match (closed_shape, sample_shape) {
-        (Some((skewness, kurtosis)), _) => {
-            (closed_shape, test.samples_needed(skewness, kurtosis), "of the law")
-        }
-        (None, Some((skewness, kurtosis))) => {
-            (sample_shape, test.studentised_samples_needed(skewness, kurtosis), "of the sample")
-        }
-        (None, None) => (None, f64::INFINITY, "unknown"),
-    };
-    // N for the power: (critical z + z of the power) sqrt(variance/N) + 2 allowance = half of the mean.
-    let reach = test.critical_z + upper_quantile(1.0 - POWER);
-    let room = MAX_DETECTABLE_RELATIVE_BIAS * reference.mean.abs() - 2.0 * reference.allowance();
-    let for_power = if reference.mean == 0.0 {
-        0.0
-    } else if room > 0.0 {
-        reach * reach * variance / room / room
-    } else {
-        f64::INFINITY
-    };
-    let samples_needed = needed.max(for_power);
+    let Shape { shape, needed, origin } = Shape::of(measured, reference, &test);
+    let closed_shape = shape.filter(|_| origin == OF_THE_LAW);
+    let samples_needed = needed.max(for_power(&test, reference, variance, MAX_DETECTABLE_RELATIVE_BIAS));
     if n < needed {
         let Some((skewness, kurtosis)) = shape else {
             return Err(not_testable(None, "the shape of the law is unknown".to_owned()));
@@ -85,6 +97,7 @@ pub(crate) fn z_test(
         ));
     }
     let error = (variance / n).sqrt();
+    let reach = test.critical_z + upper_quantile(1.0 - POWER);
     let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
     let extremes = [measured.minimum(), measured.maximum()];
     let greatest =
