@@ -37,6 +37,7 @@ fn expectation() -> Expectation {
         relative_central: [f64::NAN; HIGHEST_MOMENT - 1],
         log_relative_variance: f64::NAN,
         relative_variance_error: 0.0,
+        relative_variance_bound: f64::INFINITY,
         lookups: 1.0,
     };
     let truth = Truth { optical_thickness: 1.0, error: 0.0 };
