@@ -31,7 +31,8 @@ pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
         LookupLaw::MeanOnly => None,
         LookupLaw::Unknown => return None,
     };
-    Some(Reference { error: QUADRATURE * expected, moments, ..Reference::exact(expected) })
+    let scores = crate::scores::NEVER_NEGATIVE;
+    Some(Reference { error: QUADRATURE * expected, moments, scores, ..Reference::exact(expected) })
 }
 
 /// As [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
