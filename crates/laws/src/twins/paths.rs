@@ -32,8 +32,9 @@ fn tried(estimate: impl FnMut(&mut Seeded) -> f64, right: &Reference, derived: f
         Ok(measured) => measured,
         Err(error) => return Rejection::exact(true, error.to_string()),
     };
-    let verdict = judge(&measured, right, run.alpha);
-    let own = judge(&measured, &Reference { mean: derived, ..*right }, run.alpha);
+    let right = right.with_mild_tails();
+    let verdict = judge(&measured, &right, run.alpha);
+    let own = judge(&measured, &Reference { mean: derived, ..right }, run.alpha);
     Rejection {
         rejected: verdict.sound == Some(false) && own.sound != Some(false),
         mean_z: verdict.mean_z,
