@@ -3,8 +3,7 @@
 
 use fairflight_collision::{Albedo, SingleParticle, Version};
 use fairflight_media::{
-    Bounded, BoundedInCells, Constant, Extinction, InCells, IntervalBounds, Majorant, PiecewiseLinear,
-    Vacuum,
+    Bounded, BoundedInCells, Constant, Extinction, InCells, IntervalBounds, Majorant, PiecewiseLinear, Vacuum,
 };
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{
