@@ -71,7 +71,7 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
 /// The two kinds are independent Poisson processes. A flight ends at s with the density ending(s) exp(−∫ ending), and has
 /// then looked up once more than the Poisson number P of mean ν(s) = ∫_0^s of the other rate; one that leaves the profile
 /// has looked up P times.
-pub(crate) fn lookups_of_a_walk<F: Extinction>(
+pub fn lookups_of_a_walk<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
     rates: &dyn Fn(f64, f64) -> [f64; 2],

@@ -161,6 +161,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
                 relative_central,
                 log_relative_variance: f64::NEG_INFINITY,
                 relative_variance_error: 0.0,
+                relative_variance_bound: f64::INFINITY,
                 lookups: 0.0,
             };
         }
@@ -191,6 +192,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
             relative_central,
             log_relative_variance: relative_central[0].ln(),
             relative_variance_error: moments.error[0] / moments.value[0],
+            relative_variance_bound: f64::INFINITY,
             lookups,
         }
     }
@@ -213,7 +215,7 @@ fn of_rare_escapes((tau, depth): (f64, f64), weight: f64, lookups: f64) -> Theor
         relative_central: std::array::from_fn(|i| log(i as f64 + 2.0).exp()),
         log_relative_variance: log(2.0),
         relative_variance_error: 0.0,
-        lookups,
+        ..Theory::mean_only(lookups)
     }
 }
 

@@ -37,7 +37,7 @@ pub enum PSeriesVersion {
 ///
 /// Where t_c = 0 the first three P_k vanish (not for `Cumulative`): admitted for σ_t = 0 only.
 ///
-/// **Moments.** `Ratio`: all, by [`ProductLaw`]. `Cumulative`: none. For the others the second moment is usually written as a
+/// **Moments.** `Ratio`: all, by [`ProductLaw`]. `Cumulative`: a bound of the variance. For the others the second moment is usually written as a
 /// double sum; here the variance, all of it positive terms. (5) Follow the expectation of the estimate given what is known.
 /// With A_k = Y_1 … Y_k/k! and r_k = Σ_j y^j k!/(k + j)!, so that r_k = 1 + y/(k + 1) r_{k+1}, and all orders from k on are expected to
 /// give A_k/P_k r_k once k is reached. (6) Whether k is reached from k − 1 is a coin of probability P_k/P_{k−1} that decides
@@ -45,7 +45,11 @@ pub enum PSeriesVersion {
 ///
 /// > Var/T² = exp(−2y) Σ_{k ≥ 1} q^{k−1}/k!² r_k² (v + y² (1 − P_k/P_{k−1}))/P_k,   v = S ∫ (σ_t − τ/S)² ds.
 ///
-/// It is finite always, as k! P_k falls no faster than a power.
+/// It is finite always, as k! P_k falls no faster than a power. (7) For `Cumulative` only a bound: with w_k the weight of term k, of
+/// magnitude at least 1 while it lives, the point k decides about w_{k−1} (Y_k − y)/k · r_k, and the coin, given a = w_{k−1} Y_k/k
+/// and tossed for |a| < 1, about r_k times a variance of |a| − a², at most 1/4. As E|w_k| = E|a| = p^k/k!, p = E|Y|,
+///
+/// > Var/T² ≤ exp(−2y) Σ_{k ≥ 1} r_k² (m_{k−1} v/k² + c_k),   c_k = min(p^k/k!, min(1, p^{k−1}/(k−1)!)/4),   m_k = m_{k−1} q/k² + c_k, m_0 = 1.
 ///
 /// **Cost.** Σ_{k ≥ 1} P_k look-ups; t_c, a Poisson number, for `Ratio` and `NextFlight`; for `Cumulative` it has no closed form.
 ///
@@ -304,6 +308,29 @@ impl PSeries {
     }
 }
 
+impl PSeries {
+    /// The bound (7) for the variance `spread` = v and p = `magnitude`; infinite where it overflows, or would take too many orders.
+    fn cumulative_bound(&self, y: f64, spread: f64, magnitude: f64) -> f64 {
+        let q = y * y + spread;
+        // Beyond these a term is a small part of the one before.
+        let orders = 8.0 * q.sqrt().max(y.abs()) + 100.0;
+        if orders.is_nan() || orders > MOST_ORDERS {
+            return f64::INFINITY;
+        }
+        let remainders = log_remainders(y, orders as usize);
+        let (mut sum, mut square, mut lives) = (0.0, 1.0, 1.0);
+        for (k, remainder) in remainders.iter().enumerate().skip(1) {
+            let order = k as f64;
+            let arrives = lives * magnitude / order;
+            let coin = f64::min(arrives, 0.25 * f64::min(1.0, lives));
+            sum += (2.0 * (remainder - y)).exp() * (square * spread / (order * order) + coin);
+            square = square * q / (order * order) + coin;
+            lives = arrives;
+        }
+        if sum.is_nan() { f64::INFINITY } else { sum }
+    }
+}
+
 impl<F: Extinction> ClosedForm<F> for PSeries {
     fn theory(
         &self,
@@ -313,7 +340,22 @@ impl<F: Extinction> ClosedForm<F> for PSeries {
     ) -> Theory {
         let (pivot, length) = (self.pivot, quadrature.field().length());
         match self.version {
-            PSeriesVersion::Cumulative => Theory::mean_only(f64::NAN),
+            PSeriesVersion::Cumulative => {
+                let mean = if length > 0.0 { optical_thickness / length } else { 0.0 };
+                let spread =
+                    quadrature.integrate(tolerance, |_, sigma_t| [length * (sigma_t - mean).powi(2)]);
+                let (v, y) = (spread.value[0] + spread.error[0], pivot - optical_thickness);
+                // |Y| has kinks where Y vanishes: a rough integral and its error.
+                let of_magnitude = |_: f64, sigma_t: f64| [(pivot - length * sigma_t).abs() / length];
+                let magnitude = quadrature.integrate(Tolerance::to(1e-3), of_magnitude);
+                let most = (y * y + v).sqrt();
+                let magnitude =
+                    if length > 0.0 { f64::min(most, magnitude.value[0] + magnitude.error[0]) } else { most };
+                Theory {
+                    relative_variance_bound: self.cumulative_bound(y, v, magnitude),
+                    ..Theory::mean_only(f64::NAN)
+                }
+            }
             PSeriesVersion::Ratio if pivot == 0.0 => of_variance(0.0, 0.0, 0.0, 0.0),
             PSeriesVersion::Ratio => {
                 let collisions = quadrature.integrate(tolerance, |_, sigma_t| {

@@ -82,6 +82,7 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
                 relative_central: [0.0; HIGHEST_MOMENT - 1],
                 log_relative_variance: f64::NEG_INFINITY,
                 relative_variance_error: 0.0,
+                relative_variance_bound: f64::INFINITY,
                 lookups,
             };
         }
@@ -107,6 +108,7 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
             relative_central: central.value,
             log_relative_variance: central.value[0].ln(),
             relative_variance_error: central.error[0] / central.value[0],
+            relative_variance_bound: f64::INFINITY,
             lookups,
         }
     }
@@ -152,6 +154,6 @@ fn of_great_exponents(
         relative_central: std::array::from_fn(|i| if central.value[i] == 0.0 { 0.0 } else { moment(i) }),
         log_relative_variance: log(0),
         relative_variance_error: central.error[0] / central.value[0],
-        lookups,
+        ..Theory::mean_only(lookups)
     }
 }

@@ -168,6 +168,11 @@ where
             let sampling = self.sampling.sigma_t(s);
             (sampling > 0.0).then(|| (sampling, self.model.transmitted(self.ratio(s, sigma_t))))
         };
+        for kink in self.model.kinks() {
+            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
+                self.ratio_at(s, sigma_t).map_or(1.0, |ratio| ratio - kink)
+            });
+        }
         let collisions = quadrature.integrate(tolerance, |s, sigma_t| match at(s, sigma_t) {
             Some((sampling, transmitted)) => {
                 std::array::from_fn(|i| sampling * transmitted.moment_about_one(i as i32 + 2))

@@ -62,6 +62,16 @@ impl<C: InvertOpticalThickness, R: InvertOpticalThickness> DecompositionTracking
         let transmitted = self.model.transmitted(ratio);
         std::array::from_fn(|i| sampling * (transmitted.moment(i as i32 + 1) - 1.0) - control)
     }
+
+    /// Splits the ray where the moments of a collision are not smooth in ρ.
+    fn split_at_kinks<F: Extinction>(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) {
+        for kink in self.model.kinks() {
+            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
+                let (_, sampling, ratio) = self.at(s, sigma_t);
+                if sampling > 0.0 { ratio - kink } else { 1.0 }
+            });
+        }
+    }
 }
 
 impl<F, C, R> FreeFlight<F> for DecompositionTracking<C, R>
@@ -122,6 +132,7 @@ where
         tolerance: Tolerance,
         score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
+        self.split_at_kinks(quadrature, tolerance);
         quadrature.integrate_nested(
             tolerance,
             |s, sigma_t| self.growth(s, sigma_t),
@@ -136,6 +147,7 @@ where
     }
 
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
+        self.split_at_kinks(quadrature, tolerance);
         quadrature.integrate(tolerance, |s, sigma_t| self.growth(s, sigma_t)).value.map(f64::exp)
     }
 
@@ -144,6 +156,7 @@ where
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
     ) -> Option<[f64; HIGHEST_MOMENT]> {
+        self.split_at_kinks(quadrature, tolerance);
         Some(lookups_of_a_race(quadrature, tolerance, &|s, sigma_t| {
             let (control, sampling, ratio) = self.at(s, sigma_t);
             let [ends, passes] =

@@ -151,6 +151,33 @@ impl<R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTracking<MaxS
         let ratio = ratios[field.index()];
         Events { control, sampling, ratio, collides: collides / sum, passes: passes / sum }
     }
+
+    /// Splits the ray where max |r_l| and max |1 − r_l| are not smooth: where a ratio passes 0 or 1, and where two are as far from
+    /// either: r_i = r_j, r_i = −r_j, r_i = 2 − r_j.
+    fn split_at_kinks<F, const N: usize>(
+        &self,
+        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
+        tolerance: Tolerance,
+    ) where
+        F: SpectralExtinction<N> + Copy,
+    {
+        let spectrum = *quadrature.field().spectrum();
+        let mut split = |function: &dyn Fn(&[f64; N]) -> f64| {
+            quadrature.split_at_zeros(tolerance, &|s, _| {
+                let may_collide = self.sampling.sigma_t(s) > 0.0;
+                if may_collide { function(&self.ratios(s, &spectrum.sigma_t(s))) } else { 1.0 }
+            });
+        };
+        for i in 0..N {
+            split(&|r| r[i]);
+            split(&|r| r[i] - 1.0);
+            for j in 0..i {
+                split(&|r| r[i] - r[j]);
+                split(&|r| r[i] + r[j]);
+                split(&|r| r[i] + r[j] - 2.0);
+            }
+        }
+    }
 }
 
 impl Events {
@@ -185,6 +212,7 @@ where
         tolerance: Tolerance,
         score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
+        self.split_at_kinks(quadrature, tolerance);
         let field = *quadrature.field();
         quadrature.integrate_nested(
             tolerance,
@@ -202,6 +230,7 @@ where
         quadrature: &mut RayQuadrature<Wavelength<F, N>>,
         tolerance: Tolerance,
     ) -> [f64; HIGHEST_MOMENT] {
+        self.split_at_kinks(quadrature, tolerance);
         let field = *quadrature.field();
         quadrature.integrate(tolerance, |s, _| self.events(&field, s).growth()).value.map(f64::exp)
     }
@@ -211,6 +240,7 @@ where
         quadrature: &mut RayQuadrature<Wavelength<F, N>>,
         tolerance: Tolerance,
     ) -> Option<[f64; HIGHEST_MOMENT]> {
+        self.split_at_kinks(quadrature, tolerance);
         let field = *quadrature.field();
         Some(lookups_of_a_race(quadrature, tolerance, &|s, _| {
             let events = self.events(&field, s);

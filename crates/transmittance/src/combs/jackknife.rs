@@ -74,6 +74,7 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
                 relative_central: [0.0; HIGHEST_MOMENT - 1],
                 log_relative_variance: f64::NEG_INFINITY,
                 relative_variance_error: 0.0,
+                relative_variance_bound: f64::INFINITY,
                 lookups,
             };
         }
@@ -100,6 +101,7 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
             relative_central,
             log_relative_variance: variance.ln(),
             relative_variance_error: law.relative_error(),
+            relative_variance_bound: f64::INFINITY,
             lookups,
         }
     }
@@ -138,7 +140,7 @@ fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f
         relative_central,
         log_relative_variance,
         relative_variance_error: law.relative_error(),
-        lookups,
+        ..Theory::mean_only(lookups)
     }
 }
 

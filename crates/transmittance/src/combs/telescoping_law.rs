@@ -204,7 +204,7 @@ impl Scale {
             relative_central,
             log_relative_variance,
             relative_variance_error,
-            lookups,
+            ..Theory::mean_only(lookups)
         }
     }
 }

@@ -216,6 +216,7 @@ impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
                 variance.ln()
             },
             relative_variance_error: if variance > 0.0 { error / variance } else { 0.0 },
+            relative_variance_bound: f64::INFINITY,
             lookups: self.expected_lookups(),
         }
     }
