@@ -208,7 +208,7 @@ fn series<F: Breakpoints + OpticalThickness>(sweep: &mut Sweep, field: &F, (tau,
 
 /// Everything that is made of combs, and the biased baselines.
 fn combs<F: Breakpoints + OpticalThickness>(sweep: &mut Sweep, field: &F) {
-    for teeth in [1, 5] {
+    for teeth in [1, 3, 5] {
         let at = (Law::Known, 1e4);
         for shape in CombShape::ALL {
             let comb = Comb::new(teeth, shape).unwrap();
