@@ -4,7 +4,7 @@ use super::{Check, LAWFUL, check};
 use crate::collision::{self, RATIOS};
 use crate::exact::decisions::expectation;
 use crate::exact::{agree, greatest};
-use crate::{CheckResult, catalogue::Law};
+use crate::{CheckResult, Kind, catalogue::Law};
 use fairflight_collision::{Albedo, SingleOutcome, SingleParticle, Version, Woodcock as WoodcockModel};
 use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock as WoodcockFlight};
 use fairflight_media::{Bounded, Bounds, Constant, Homogeneous, Line, phase::Isotropic};
@@ -25,22 +25,24 @@ pub(super) fn checks() -> Vec<Check> {
     let single = |version| move |albedo| SingleParticle { version, albedo };
     vec![
         outcomes("woodcock", |albedo| WoodcockModel { albedo }),
-        outcomes("terminating", single(Version::Terminating)),
-        outcomes("non-terminating", single(Version::NonTerminating)),
-        outcomes("adaptive", single(Version::Adaptive)),
+        outcomes("terminating", single(Version::Terminating)).about([Kind::SingleParticle]),
+        outcomes("non-terminating", single(Version::NonTerminating)).about([Kind::SingleParticle]),
+        outcomes("adaptive", single(Version::Adaptive)).about([Kind::SingleParticle]),
         check("decision/woodcock", "woodcock", "constant", || {
             one_collision(|share, source, field| {
                 let scored = |estimate: f64| (estimate, 1.0 - share);
                 scored(Woodcock.estimate(&field, source))
             })
-        }),
+        })
+        .about([Kind::Woodcock]),
         check("decision/next flight after delta tracking", "next flight", "constant", || {
             one_collision(|share, source, field| {
                 let from = |distance: f64| (-MAJORANT * distance).exp();
                 let estimate = NextFlight::new(NextFlightVersion::Delta).estimate(&field, source);
                 (estimate, from(1.0) + (1.0 - share) * from(1.0 - COLLISION))
             })
-        }),
+        })
+        .about([Kind::NextFlight]),
         check("decision/free flight by woodcock", "free flight by woodcock", "constant", || {
             one_collision(|share, source, field| {
                 let flight = WoodcockFlight::new(Constant::new(MAJORANT, 1.0).expect(LAWFUL));
