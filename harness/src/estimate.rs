@@ -35,14 +35,19 @@ pub(crate) fn run(
     environment: &Environment,
     stdin: &mut dyn Read,
     stdout: &mut dyn Write,
+    stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
     let name = named(&arguments.spec);
     let text = read(&arguments.spec, stdin).map_err(|failure| failure.within(&name))?;
     let overrides = Overrides { samples: arguments.samples, seed: arguments.seed };
     let request = Request::parse(&text, overrides).map_err(|failure| failure.within(&name))?;
-    let (json, unsound) = environment
+    let Answer { json, unsound, warnings } = environment
         .on_threads(arguments.threads, || answer(&request, environment))
         .map_err(|failure| failure.within(&name))?;
+    for warning in warnings {
+        // Nobody is left to warn if standard error is closed.
+        let _ = writeln!(stderr, "{name}: {warning}");
+    }
     writeln!(stdout, "{json}")
         .map_err(|error| Failure::NotWritten(format!("cannot write the result: {error}")))?;
     Ok(if unsound { UNSOUND } else { DONE })
@@ -62,23 +67,34 @@ pub(crate) fn read(path: &Path, stdin: &mut dyn Read) -> Result<String, Failure>
     std::fs::read_to_string(path).map_err(Failure::refused)
 }
 
-fn answer(request: &Request, environment: &Environment) -> Result<(String, bool), Failure> {
+/// What is written, and where.
+struct Answer {
+    json: String,
+    unsound: bool,
+    /// For a person, each once.
+    warnings: Vec<String>,
+}
+
+fn answer(request: &Request, environment: &Environment) -> Result<Answer, Failure> {
     let library = MediumLibrary::default();
     match request {
         Request::Single(experiment) => {
             let outcome = one(experiment, &library, environment)?;
-            Ok((to_json(&outcome.result)?, outcome.unsound))
+            let warnings = outcome.result.warning.iter().cloned().collect();
+            Ok(Answer { json: to_json(&outcome.result)?, unsound: outcome.unsound, warnings })
         }
         Request::Sweep(sweep) => {
             let mut points = Vec::with_capacity(sweep.points.len());
-            let mut unsound = false;
+            let (mut unsound, mut warnings) = (false, Vec::new());
             for (value, experiment) in &sweep.points {
                 let outcome = one(experiment, &library, environment)
                     .map_err(|failure| failure.within(format!("sweep value {value}")))?;
                 unsound |= outcome.unsound;
+                warnings.extend(outcome.result.warning.clone());
                 points.push(SweepPoint { value: value.clone(), result: outcome.result });
             }
-            Ok((to_json(&SweepResult { points })?, unsound))
+            warnings.dedup();
+            Ok(Answer { json: to_json(&SweepResult { points })?, unsound, warnings })
         }
     }
 }

@@ -51,7 +51,7 @@ pub fn run(
     };
     let environment = Environment::new(&arguments, terminal);
     let outcome = match cli.command {
-        Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
+        Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),

@@ -6,6 +6,7 @@ mod estimate;
 #[cfg(unix)]
 mod interrupt;
 mod passes;
+mod references;
 mod refusals;
 mod render;
 mod render_refusals;

@@ -6,8 +6,8 @@ use crate::transmittance::{Observed, check};
 use crate::{CheckResult, Expectation, Run, Truth, Unit};
 use fairflight_collision::CollisionModel;
 use fairflight_media::{
-    Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, RayQuadrature,
-    Tolerance,
+    Breakpoints, Certified, Enclosed, Extinction, InvertOpticalThickness, Majorant, Minorant,
+    OpticalThickness, RayQuadrature, Tolerance,
 };
 use fairflight_stats::Scores;
 use fairflight_transmittance::{
@@ -28,9 +28,20 @@ pub(super) struct Specimen<F> {
     pub(super) field: F,
     /// Divides the samples where look-ups are expensive.
     pub(super) frugality: u64,
-    closed_form: Option<Truth>,
+    truth: fn(&F) -> Truth,
     pub(super) tolerance: Tolerance,
     quadrature: OnceLock<(RayQuadrature<F>, Truth)>,
+}
+
+impl<F> Specimen<Certified<F>>
+where
+    F: Enclosed,
+    Certified<F>: SpecimenField,
+{
+    /// A profile whose optical thickness has a certificate; other integrals are to `tolerance`.
+    pub(super) fn certified(name: &'static str, field: F, tolerance: Tolerance) -> Self {
+        Self::known(name, Certified::new(field), |field| Truth::certified(field.certificate()), tolerance)
+    }
 }
 
 impl<F: SpecimenField> Specimen<F> {
@@ -39,21 +50,17 @@ impl<F: SpecimenField> Specimen<F> {
     where
         F: OpticalThickness,
     {
-        let truth = Truth::closed_form(&field);
-        Self { closed_form: Some(truth), ..Self::integrated(name, field, Tolerance::TIGHT) }
+        Self::known(name, field, Truth::closed_form, Tolerance::TIGHT)
     }
 
-    /// A profile whose optical thickness is found by quadrature to `tolerance`.
-    pub(super) fn integrated(name: &'static str, field: F, tolerance: Tolerance) -> Self {
-        Self { name, field, frugality: 1, closed_form: None, tolerance, quadrature: OnceLock::new() }
+    fn known(name: &'static str, field: F, truth: fn(&F) -> Truth, tolerance: Tolerance) -> Self {
+        Self { name, field, frugality: 1, truth, tolerance, quadrature: OnceLock::new() }
     }
 
     pub(super) fn prepared(&self) -> (RayQuadrature<F>, Truth) {
         let (quadrature, truth) = self.quadrature.get_or_init(|| {
-            let mut quadrature = RayQuadrature::new(self.field.clone(), &[]);
-            let truth =
-                self.closed_form.unwrap_or_else(|| Truth::quadrature(&mut quadrature, self.tolerance));
-            (quadrature, truth)
+            let truth = (self.truth)(&self.field);
+            (RayQuadrature::new(self.field.clone(), &[]), truth)
         });
         (quadrature.clone(), *truth)
     }
