@@ -52,7 +52,7 @@ impl Truth {
         let far = majorant > FAR_ABOVE * seen.max(0.0);
         self.doubt.filter(|_| far).map(|(doubt, _)| {
             format!(
-                "warning: the declared majorant {majorant} is far above all that was met of sigma_t, {seen}, and the reference is not \
+                "the declared majorant {majorant} is far above all that was met of sigma_t, {seen}, and the reference is not \
                  certified: {doubt}"
             )
         })

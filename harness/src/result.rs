@@ -18,9 +18,6 @@ pub struct ExperimentResult {
     pub verdict: VerdictResult,
     /// Where the numbers come from.
     pub provenance: Provenance,
-    /// What a person should know; not part of the JSON.
-    #[serde(skip)]
-    pub warning: Option<String>,
 }
 
 /// The measured moments. Quantities that do not exist for so few samples are null.

@@ -1,6 +1,6 @@
 //! The optical thickness that estimates are judged against, and the unit that they are judged in.
 
-use fairflight_media::{Certificate, OpticalThickness};
+use fairflight_media::{Breakpoints, Certificate, OpticalThickness, RayQuadrature, Tolerance};
 
 /// τ = ∫ σ_t over a whole profile, with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,12 @@ impl Truth {
     /// From a closed form.
     pub fn closed_form<F: OpticalThickness>(field: &F) -> Self {
         Self { optical_thickness: field.optical_thickness(0.0, field.length()), error: 0.0 }
+    }
+
+    /// From quadrature of a profile that knows all its breakpoints, with the error that it estimated: what a closed form is checked against.
+    pub fn quadrature<F: Breakpoints>(quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Self {
+        let integral = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]);
+        Self { optical_thickness: integral.value[0], error: integral.error[0] }
     }
 
     /// From a certificate, with the error that it proves; infinite where it proves none.
@@ -60,7 +66,7 @@ impl Unit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fairflight_media::{Constant, ExpressionProfile, Tolerance};
+    use fairflight_media::{Constant, ExpressionProfile};
 
     #[test]
     fn a_transmittance_is_one_in_its_own_unit_where_it_is_a_number() {

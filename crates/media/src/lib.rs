@@ -38,6 +38,7 @@ mod extinction;
 mod gradient_noise;
 mod homogeneous;
 mod inside;
+mod interpolation;
 mod interval;
 mod interval_bounds;
 mod lattice_planes;
@@ -50,6 +51,7 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod rounding;
 mod spectral;
 mod voxels;
 mod watched;
@@ -69,6 +71,7 @@ pub use extinction::{
     Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
 };
 pub use homogeneous::Homogeneous;
+pub use interpolation::lerp;
 pub use interval_bounds::IntervalBounds;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
 pub use medium_bounds::{BoxBounds, Boxes};
@@ -79,6 +82,7 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use rounding::rounding_of_difference;
 pub use spectral::{
     Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
     Wavelength,

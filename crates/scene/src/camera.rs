@@ -77,6 +77,17 @@ impl Camera {
         Ok(Self { origin, forward, right: -left, up: forward.cross(left), half_extent, resolution })
     }
 
+    /// The same view in so many columns and rows, of whatever shape the pixels then are.
+    ///
+    /// # Errors
+    /// If there are no pixels.
+    pub fn with_resolution(self, resolution: [u32; 2]) -> Result<Self, SceneError> {
+        if resolution.contains(&0) {
+            return Err(SceneError::NoPixels { what: "resolution" });
+        }
+        Ok(Self { resolution, ..self })
+    }
+
     /// Columns and rows.
     #[must_use]
     pub fn resolution(&self) -> [u32; 2] {
@@ -129,6 +140,18 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn another_resolution_is_the_same_view() {
+        let at = |x, y, z| DVec3::new(x, y, z);
+        let camera =
+            Camera::new(at(0.0, 0.0, 0.0), at(0.0, 0.0, 1.0), at(0.0, 1.0, 0.0), 60.0, [90, 30]).unwrap();
+        let other = camera.with_resolution([2, 3]).unwrap();
+        for (pixel, same) in [([0, 0], [0, 0]), ([45, 20], [1, 2])] {
+            assert_eq!(camera.ray(pixel, [0.0; 2]).direction, other.ray(same, [0.0; 2]).direction);
+        }
+        assert!(camera.with_resolution([4, 0]).is_err());
+    }
     use glam::dvec3;
 
     fn camera() -> Camera {

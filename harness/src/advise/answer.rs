@@ -153,7 +153,7 @@ impl Answer {
     /// The answer for a person.
     pub(super) fn table(&self) -> String {
         let mut table = format!(
-            "{}: {} rays, majorant {:.4}, mean extinction {:.4}\nuse {} (per look-up), {} (per second on this machine)\n\n{:<34}{:>9}{:>12}{:>30}{:>12}{:>30}\n",
+            "advice for transmittance along rays, not for pictures\n{}: {} rays, majorant {:.4}, mean extinction {:.4}\nuse {} (per look-up), {} (per second on this machine)\n\n{:<34}{:>9}{:>12}{:>30}{:>12}{:>30}\n",
             self.medium,
             self.rays,
             self.majorant,

@@ -12,7 +12,7 @@ mod hostile;
 mod pfm;
 mod png;
 
-pub use self::png::Exposure;
+pub use self::png::{Exposure, luminance};
 
 use crate::Failure;
 use std::path::Path;
@@ -130,7 +130,7 @@ impl Image {
         }
     }
 
-    /// The bytes of this image as a file of `format`.
+    /// The bytes of this image as a file of `format`; what is tone-mapped is shown as it is, at an exposure of 1.
     ///
     /// # Errors
     /// If the format's writer fails.
@@ -138,8 +138,16 @@ impl Image {
         match format {
             Format::Pfm => Ok(pfm::encode(self)),
             Format::Exr => exr::encode(self),
-            Format::Png => png::encode(self, Exposure::of(self)),
+            Format::Png => self.tone_mapped(Exposure::default()),
         }
+    }
+
+    /// The bytes of this image as a `.png` file, shown at this exposure.
+    ///
+    /// # Errors
+    /// If the format's writer fails.
+    pub fn tone_mapped(&self, exposure: Exposure) -> Result<Vec<u8>, String> {
+        png::encode(self, exposure)
     }
 }
 

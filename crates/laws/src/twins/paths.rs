@@ -7,7 +7,7 @@ use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Rejection, Twin};
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{single_scattering, slab};
-use crate::{Run, measure};
+use crate::{Kind, Run, measure};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::phase::Isotropic;
 use fairflight_media::{
@@ -235,7 +235,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let derived = right.mean * (1.0 - 1.0 / SIGMA_SAMP);
                 tried(|source| twin.radiance(&cube.line, source), &right, derived, run)
             },
-        ),
+        ).about([Kind::DoubleParticle]),
         // dθ for ds: the integrand is weighted with D/(D² + (s − s_l)²).
         Twin::new(
             "source-driven sampling",
@@ -293,6 +293,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&field, &LineIntegral::new(4).expect(LAWFUL), &[]);
                 judged(&field, &StratifiesEveryStep { splits: 4, majorant: 1.0 }, theory, run)
             },
-        ),
+        ).about([Kind::LineIntegral]),
     ]
 }

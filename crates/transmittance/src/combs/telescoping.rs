@@ -4,6 +4,7 @@ use super::{Comb, CombShape, NoTeeth, Prepared};
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
 use fairflight_sources::UniformSource;
+use std::cell::Cell;
 
 /// exp(−X) of a comb of k teeth, and the difference that a comb of 2^l k teeth makes, at a random level l.
 ///
@@ -129,9 +130,23 @@ impl Telescoping {
             even += x_even;
             odd += x_odd;
         }
-        let sinh = (0.5 * scale * (odd - even)).sinh();
-        (scale * base, -2.0 * (offset - scale * (even + odd)).exp() * sinh * sinh)
+        (scale * base, difference(offset - scale * (even + odd), 0.5 * scale * (odd - even)))
     }
+}
+
+/// −2 exp(`exponent`) sinh²(`half`), 0 or infinite only where that itself is: exp(exponent) and sinh² may under- and overflow where their
+/// product does neither. With 2 sinh²(b) = exp(2|b|) (1 − exp(−2|b|))²/2 it is one exponential.
+#[inline]
+fn difference(exponent: f64, half: f64) -> f64 {
+    if exponent.abs() < 700.0 && half.abs() < 350.0 {
+        let sinh = half.sinh();
+        return -2.0 * exponent.exp() * sinh * sinh;
+    }
+    if half == 0.0 {
+        return 0.0;
+    }
+    let both = 2.0 * half.abs();
+    -(exponent + both + 2.0 * (-(-both).exp_m1()).ln() - std::f64::consts::LN_2).exp()
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
@@ -168,13 +183,13 @@ struct Level {
 }
 
 impl Telescoping {
-    /// The moments of a level in units of `unit`; `None` where they cost too much.
+    /// The moments of a level in units of `unit` exp(`scale.log`); `None` where they cost too much.
     fn moments_at<F: Breakpoints>(
         &self,
         field: &F,
         prepared: &Prepared,
         level: u32,
-        (thickness, unit): (f64, f64),
+        (scale, unit): (Scale, f64),
         tolerance: Tolerance,
     ) -> Option<Level> {
         let teeth = self.comb.teeth().checked_mul(1_u32.checked_shl(level)?)?;
@@ -190,7 +205,7 @@ impl Telescoping {
             Tolerance { absolute: exactness / probability.sqrt(), relative: exactness, most_panels };
         let integral = adaptive_integral(1.0, &breaks, tolerance, |u| {
             let (base, difference) =
-                self.nested(field, prepared, (level, u), thickness, |x| (thickness - x).exp_m1());
+                self.nested(field, prepared, (level, u), scale.thickness - scale.log, |x| scale.deviation(x));
             let (base, difference) = (base / unit, difference / unit);
             let weighted = difference / probability;
             let value = base + weighted;
@@ -220,25 +235,45 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
         let field = quadrature.field();
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let lookups = self.expected_lookups();
-        let with = |relative_central: [f64; HIGHEST_MOMENT - 1], relative_variance_error: f64| Theory {
-            relative_mean: 1.0,
-            relative_central,
-            log_relative_variance: relative_central[0].ln(),
-            relative_variance_error,
-            lookups,
-        };
         let breaks = self.comb.folded_breakpoints(field, &prepared);
         let noise = 8.0 * f64::EPSILON * (1.0 + optical_thickness.abs());
-        let coarse = Tolerance { absolute: noise * noise, relative: 1e-3, ..tolerance };
-        let rough = adaptive_integral(1.0, &breaks, coarse, |u| {
-            let relative = (optical_thickness - self.comb.thickness(field, &prepared, u)).exp_m1();
-            [relative * relative]
-        });
-        if rough.value[0] <= noise * noise {
-            return with([0.0; HIGHEST_MOMENT - 1], 0.0);
+        let rough = |scale: Scale| {
+            let absolute = if scale.log == 0.0 { noise * noise } else { 0.0 };
+            let coarse = Tolerance { absolute, relative: 1e-3, ..tolerance };
+            let greatest = Cell::new(f64::NEG_INFINITY);
+            let square = adaptive_integral(1.0, &breaks, coarse, |u| {
+                let x = self.comb.thickness(field, &prepared, u);
+                greatest.set(greatest.get().max(optical_thickness - x));
+                let relative = scale.deviation(x);
+                [relative * relative]
+            });
+            (square.value[0], greatest.get())
+        };
+        let mut scale = Scale { thickness: optical_thickness, log: 0.0 };
+        let (mut square, greatest) = rough(scale);
+        if greatest > MOST_EXPONENT {
+            scale.log = greatest;
+            square = f64::INFINITY;
         }
-        let unit = rough.value[0].sqrt();
-        let exactness = tolerance.relative.max(8.0 * noise / unit);
+        // Finer nodes may find greater ones: beyond 354 more they overflow, and are the new unit.
+        for _ in 0..MOST_ROUNDS {
+            if square.is_finite() {
+                break;
+            }
+            let (found, greatest) = rough(scale);
+            square = found;
+            if !square.is_finite() {
+                scale.log = greatest;
+            }
+        }
+        let with = |moments, error| scale.theory(moments, error, lookups);
+        if square <= noise * noise && scale.log == 0.0 {
+            return with(([0.0; HIGHEST_MOMENT - 1], 0.0), 0.0);
+        }
+        let unit = square.sqrt();
+        // exp(τ − X) is off by the rounding of its exponent; in units of the greatest one that is what counts.
+        let exactness =
+            tolerance.relative.max(8.0 * noise / if scale.log == 0.0 { unit } else { unit.min(1.0) });
         let tolerance = Tolerance { relative: exactness, ..tolerance };
 
         let beyond = |level: u32| (1.0 - self.level_ratio).powi(level as i32 + 1);
@@ -246,8 +281,9 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
         let (mut base, mut remaining) = (0.0, 0.0);
         let mut shares: Vec<f64> = Vec::new();
         for level in 0.. {
-            let at = (optical_thickness, unit);
-            let Some(found) = self.moments_at(field, &prepared, level, at, tolerance) else { break };
+            let Some(found) = self.moments_at(field, &prepared, level, (scale, unit), tolerance) else {
+                break;
+            };
             let probability = self.probability(level);
             for (sum, moment) in sums.iter_mut().zip(found.moments) {
                 *sum += probability * moment;
@@ -261,30 +297,78 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
                 for (sum, moment) in sums.iter_mut().zip(found.moments) {
                     *sum += beyond(level) * moment;
                 }
-                return with(powers(sums, unit), exactness);
+                return with((sums, unit), exactness);
             }
         }
         let mut unknown = [f64::NAN; HIGHEST_MOMENT - 1];
         let Some([before, .., last]) = shares.len().checked_sub(5).map(|from| &shares[from..]) else {
-            return with(unknown, f64::NAN);
+            return with((unknown, unit), f64::NAN);
         };
         // Over four levels: where a jump stands in the binary fractions of a step repeats after two or four, if at all.
         let ratio = (last / before).powf(0.25);
         if ratio >= 1.0 {
             unknown[0] = f64::INFINITY;
-            return with(unknown, f64::NAN);
+            return with((unknown, unit), f64::NAN);
         }
         // Σ over the levels that are left of p b² + 2 b E[Δ] + E[Δ²]/p.
         let tail = last * ratio / (1.0 - ratio);
         sums[0] += beyond(shares.len() as u32 - 1) * base * base - 2.0 * base * remaining + tail;
-        unknown[0] = sums[0] * unit * unit;
-        with(unknown, tail / sums[0])
+        unknown[0] = sums[0];
+        with((unknown, unit), tail / sums[0])
     }
 }
 
-/// Moments n = 2 … 8 in units of `unit` made absolute.
-fn powers(moments: [f64; HIGHEST_MOMENT - 1], unit: f64) -> [f64; HIGHEST_MOMENT - 1] {
-    std::array::from_fn(|i| moments[i] * unit.powi(i as i32 + 2))
+/// Beyond exp of this, deviations are taken in units of the greatest: their eighth powers would overflow, and soon they themselves.
+const MOST_EXPONENT: f64 = 80.0;
+
+/// Rounds in which a greater deviation may be found: each halves the panels around it.
+const MOST_ROUNDS: u32 = 60;
+
+/// What deviations exp(τ − X) − 1 are divided by: exp(`log`), 1 but for dense media.
+#[derive(Clone, Copy)]
+struct Scale {
+    thickness: f64,
+    log: f64,
+}
+
+impl Scale {
+    /// (exp(τ − x) − 1) exp(−log).
+    fn deviation(self, x: f64) -> f64 {
+        if self.log == 0.0 {
+            (self.thickness - x).exp_m1()
+        } else {
+            (self.thickness - self.log - x).exp() - (-self.log).exp()
+        }
+    }
+
+    /// The law of an estimate with moments n = 2 … 8 in units of `unit` exp(log).
+    fn theory(
+        self,
+        (moments, unit): ([f64; HIGHEST_MOMENT - 1], f64),
+        relative_variance_error: f64,
+        lookups: f64,
+    ) -> Theory {
+        let relative_central: [f64; HIGHEST_MOMENT - 1] = std::array::from_fn(|i| {
+            let n = i as i32 + 2;
+            if self.log == 0.0 || moments[i] == 0.0 {
+                return if moments[i] == 0.0 { 0.0 } else { moments[i] * unit.powi(n) };
+            }
+            let log = moments[i].abs().ln() + f64::from(n) * (unit.ln() + self.log);
+            moments[i].signum() * log.exp()
+        });
+        let log_relative_variance = if self.log == 0.0 {
+            relative_central[0].ln()
+        } else {
+            moments[0].ln() + 2.0 * (unit.ln() + self.log)
+        };
+        Theory {
+            relative_mean: 1.0,
+            relative_central,
+            log_relative_variance,
+            relative_variance_error,
+            ..Theory::mean_only(lookups)
+        }
+    }
 }
 
 #[cfg(test)]

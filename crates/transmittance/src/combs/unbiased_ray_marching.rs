@@ -125,13 +125,16 @@ impl UnbiasedRayMarching {
             let first = self.comb.thickness(field, &prepared, source.next_uniform());
             thickness += first;
             if order > 0 {
-                product.multiply(self.series(field, &prepared, source, first, order, &mut observe));
+                let (sum, exponent) = self.series(field, &prepared, source, first, order, &mut observe);
+                product.multiply(sum);
+                thickness -= exponent;
             }
         }
         product.times_exp(-thickness)
     }
 
-    /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs.
+    /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs: as s exp(t), t = 0 but where that is
+    /// beyond the range of numbers.
     fn series<F: Extinction, S: UniformSource + ?Sized>(
         &self,
         field: &F,
@@ -140,7 +143,7 @@ impl UnbiasedRayMarching {
         first: f64,
         order: u32,
         observe: &mut impl FnMut(&[f64]),
-    ) -> f64 {
+    ) -> (f64, f64) {
         // X_0 − X_i: only differences enter, and they lose no digits to a large thickness.
         let mut deviations: SmallVec<[f64; IN_PLACE]> = SmallVec::new();
         deviations.push(0.0);
@@ -149,23 +152,57 @@ impl UnbiasedRayMarching {
         }
         observe(&deviations);
 
+        // exp(X_0 − X_j) in units of the greatest, and differences in units of U, so that no product of them leaves the range.
+        let greatest = deviations.iter().copied().fold(0.0, f64::max);
+        let least = deviations.iter().copied().fold(0.0, f64::min);
+        let unit = differences_in(greatest - least, order);
+        let top = if greatest > MOST_EXPONENT { greatest } else { 0.0 };
         let mut means = SymmetricMeans::new();
         let mut sum = 0.0;
         for (pivot, &own) in deviations.iter().enumerate() {
             means.clear();
             let (before, others) = deviations.split_at(pivot);
-            means.extend(before.iter().chain(&others[1..]).map(|&other| other - own));
-            // w_k = 2^{1−k}/P.
-            let mut weight = self.roulette.weight(1);
+            means.extend(before.iter().chain(&others[1..]).map(|&other| (other - own) / unit));
+            sum += (own - top).exp() * self.polynomial(&means.means()[1..], unit);
+        }
+        let exponent = if unit == 1.0 { top } else { top + f64::from(order) * (0.5 * unit).ln() };
+        (sum / f64::from(order + 1), exponent)
+    }
+
+    /// Σ_k w_k U^k m_k over (U/2)^N, of m_1 … m_N in units of U; 1 stands for no unit and no divisor.
+    #[inline]
+    fn polynomial(&self, means: &[f64], unit: f64) -> f64 {
+        // w_k = 2^{1−k}/P.
+        let mut weight = self.roulette.weight(1);
+        if unit == 1.0 {
             let mut series = 1.0;
-            for &mean in &means.means()[1..] {
+            for &mean in means {
                 series += weight * mean;
                 weight *= 0.5;
             }
-            sum += own.exp() * series;
+            return series;
         }
-        sum / f64::from(order + 1)
+        // From the highest power down, (2/P) (U/2)^{k−N} and (U/2)^{−N} at last: what underflows is nothing beside the first.
+        let (half, mut series) = (0.5 * unit, 0.0);
+        weight *= 2.0;
+        let mut power = 1.0;
+        for &mean in means.iter().rev() {
+            series += weight * power * mean;
+            power /= half;
+        }
+        series + power
     }
+}
+
+/// exp of this, times what the polynomials may be, is far from the range of numbers.
+const MOST_EXPONENT: f64 = 300.0;
+
+/// The power of two that differences up to `spread` are taken in: 1 unless their powers up to `order` pass 2^450.
+#[inline]
+fn differences_in(spread: f64, order: u32) -> f64 {
+    // 10000^33 < 2^450.
+    let few = spread < 1e4 && order <= 33;
+    if few || spread.log2() * f64::from(order) < 450.0 { 1.0 } else { spread.log2().ceil().exp2() }
 }
 
 /// Σ (x − x̅)²/N of N + 1 values.
@@ -229,6 +266,7 @@ impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
                 variance.ln()
             },
             relative_variance_error: if variance > 0.0 { error / variance } else { 0.0 },
+            relative_variance_bound: f64::INFINITY,
             lookups: self.expected_lookups(),
         }
     }
@@ -240,7 +278,7 @@ mod tests {
     use crate::combs::CombShape;
     use crate::test_support::{agrees, seed_ray, tent, theory_of};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseLinear};
+    use fairflight_media::{Constant, PiecewiseConstant, PiecewiseLinear};
     use fairflight_sources::{Scripted, Seeded};
 
     fn comb(teeth: u32, shape: CombShape) -> Comb {
@@ -365,6 +403,46 @@ mod tests {
         // Order 0 is exp(−X) and observes nothing.
         let found = estimator.estimate_and_observe(&line, &mut Scripted::new([0.25, 0.5]), &mut seen);
         assert_eq!((found, seen.count()), ((-1.0_f64).exp(), 1));
+    }
+
+    #[test]
+    fn dense_steps_are_what_logarithms_say() {
+        // X is 0.2 at a tooth in the thin part and 80 000 in the dense one, or both: the estimate by hand, term by term in logarithms.
+        let step = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.1, 4e4]).unwrap();
+        let estimator = UnbiasedRayMarching::new(comb(1, CombShape::Uniform), Roulette::new(0.5).unwrap());
+        let (thin, dense) = (0.2_f64, 8e4_f64);
+        for (combs, x) in [([0.7, 0.1, 0.9], [dense, thin, dense]), ([0.1, 0.2, 0.9], [thin, thin, dense])] {
+            let exact: f64 = (0..3)
+                .map(|j| {
+                    let [y1, y2] = [x[j] - x[(j + 1) % 3], x[j] - x[(j + 2) % 3]];
+                    (-x[j]).exp() * (1.0 + 2.0 * 0.5 * (y1 + y2) + y1 * y2)
+                })
+                .sum::<f64>()
+                / 3.0;
+            let mut source = Scripted::new([0.2, 0.7].into_iter().chain(combs));
+            let found = estimator.estimate(&step, &mut source);
+            assert_relative_eq!(found, exact, max_relative = 1e-10);
+        }
+    }
+
+    #[test]
+    fn a_polynomial_is_the_same_in_any_unit() {
+        let estimator = UnbiasedRayMarching::new(comb(1, CombShape::Uniform), Roulette::KETTUNEN);
+        let means = [0.3, -1.2, 2.5, 0.7, -0.4, 1.0];
+        let plain = estimator.polynomial(&means, 1.0);
+        for unit in [0.5_f64, 4.0, 1024.0] {
+            let mut power = 1.0;
+            let scaled = means.map(|mean| {
+                power *= unit;
+                mean / power
+            });
+            let found = estimator.polynomial(&scaled, unit) * (0.5 * unit).powi(6);
+            assert_relative_eq!(found, plain, max_relative = 1e-13);
+        }
+        assert_eq!(
+            [differences_in(9e3, 33), differences_in(1e4, 40), differences_in(0.0, 1)],
+            [1.0, 16384.0, 1.0]
+        );
     }
 
     #[test]

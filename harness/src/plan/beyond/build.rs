@@ -22,6 +22,17 @@ const QUADRATURE: &str = "variance: closed form, integrated over the ray";
 const COMBS: &str = "variance: closed form in the moments of a comb, integrated over its offset";
 const UNKNOWN: &str = "variance: no closed form";
 
+/// A power series is drawn to orders about its pivot or rate, which are counted in 32 bits.
+const MOST_ORDERS: f64 = 1e9;
+
+/// A pivot, or a rate, up to which orders can be counted.
+fn countable(order: f64, key: &str) -> Result<f64, Failure> {
+    if order.abs() > MOST_ORDERS {
+        return Err(refuse(key, &format!("must be at most {MOST_ORDERS:e}, found {order}")));
+    }
+    Ok(order)
+}
+
 fn refuse(key: &str, error: &dyn std::fmt::Display) -> Failure {
     Failure::refused(format!("{key}: {error}"))
 }
@@ -102,11 +113,13 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
                 (None, Ray::One(profile)) => depth(profile, "p_series needs a pivot; give `pivot`")?,
                 (None, Ray::Any) => return Err(refuse(&at("pivot"), &"this key is missing")),
             };
+            let pivot = countable(pivot, &at("pivot"))?;
             let estimator = PSeries::new(version, pivot).map_err(|error| refuse(&at("pivot"), &error))?;
             Beyond::of(ByLookups(estimator), Facts::new("p_series", variance))
         }
         BeyondSpec::GeneralisedPoisson { pivot, rate } => {
-            let estimator = GeneralisedPoisson::new(*pivot, *rate).map_err(|error| refuse(key, &error))?;
+            let rate = countable(*rate, &at("rate"))?;
+            let estimator = GeneralisedPoisson::new(*pivot, rate).map_err(|error| refuse(key, &error))?;
             Beyond::of(ByLookups(estimator), Facts::new("generalised_poisson", QUADRATURE))
         }
         BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette, segments } => {

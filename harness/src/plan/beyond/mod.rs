@@ -8,6 +8,7 @@ mod learning;
 mod progressive;
 
 pub use learning::pilot;
+pub(super) use learning::{PILOTS, TUNING};
 
 use erased::{AnyField, AnyPieces, Erased};
 use fairflight_laws::Unit;
