@@ -71,6 +71,12 @@ impl Prepared {
         &self.plan
     }
 
+    /// What is known of the profile.
+    #[must_use]
+    pub fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
     /// Draws the samples, and puts what was measured beside what is known.
     ///
     /// # Errors
@@ -167,6 +173,7 @@ pub fn compare(
     let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
     let reference = Reference {
         error: truth.error() * unit.scale(),
+        certainty: truth.certainty(unit),
         moments: Some(closed),
         variance_bound: variance_bound(&prediction.theory).filter(|_| closed.mean == 1.0),
         scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
@@ -265,10 +272,15 @@ fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
 
 /// How the reference is known, in words.
 fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> String {
-    let thickness = match truth.method {
-        ThicknessMethod::ClosedForm => "closed form",
-        ThicknessMethod::GaussPerCell => "two-point Gauss-Legendre per voxel cell (exact)",
-        ThicknessMethod::Quadrature => "adaptive Gauss-Kronrod quadrature",
+    let thickness = match (truth.method, &truth.doubt) {
+        (_, Some((doubt, _))) => &format!("adaptive Gauss-Kronrod quadrature (not certified: {doubt})"),
+        (ThicknessMethod::ClosedForm, None) => "closed form (certified)",
+        (ThicknessMethod::GaussPerCell, None) => {
+            "two-point Gauss-Legendre per voxel cell (exact, thus certified)"
+        }
+        (ThicknessMethod::Quadrature, None) => {
+            "quadrature with a bound of its error on every panel (certified)"
+        }
     };
     let variance = match &plan.estimator {
         AnyEstimator::Woodcock { .. } => "variance: closed form T(1 - T)",

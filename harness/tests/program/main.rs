@@ -8,6 +8,7 @@ mod estimate;
 mod interrupt;
 mod lawful_runs;
 mod passes;
+mod references;
 mod refusals;
 mod render;
 mod render_refusals;
