@@ -36,7 +36,8 @@ impl Prepared {
         let samples = experiment.samples;
         let check = |each: f64| {
             let (total, length) = (work.total(samples, each), profile.length());
-            let because = if each > 1.0 || work.preparation > samples as f64 {
+            let by_rate = each > 1.0 || work.preparation > samples as f64;
+            let because = if by_rate {
                 let preparation = match work.preparation {
                     0.0 => String::new(),
                     lookups => format!(" and {lookups:.3e} before the first"),
@@ -47,19 +48,17 @@ impl Prepared {
             } else {
                 format!("samples: {samples}, each of one at least")
             };
-            budget.check(work.key, total, &because).map(|()| total)
+            let key = if by_rate { work.key } else { "samples" };
+            budget.check(key, total, &because).map(|()| total)
         };
         // What is known before anything is built costs nothing; else the closed form tells, where there is one.
-        check(match work.estimate {
-            Expected::Exactly(lookups) => lookups,
-            Expected::AtMost(_) => 0.0,
-        })?;
+        check(work.estimate.least())?;
         let plan = Plan::on(profile.clone(), experiment.estimator.clone(), samples, experiment.seed)?;
         let truth = Truth::of(&plan.profile, Tolerance::TIGHT)?;
         let prediction = predict(&plan.profile, &plan.estimator, &truth, Tolerance::TIGHT)?;
         let known = Some(prediction.theory.lookups).filter(|lookups| !lookups.is_nan());
         let lookups = check(match (work.estimate, known) {
-            (Expected::AtMost(_), Some(known)) => known,
+            (Expected::Between(..), Some(known)) => known,
             (estimate, _) => estimate.most(),
         })?;
         Ok(Self { plan, truth, prediction, lookups })
