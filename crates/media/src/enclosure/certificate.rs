@@ -59,7 +59,7 @@ pub enum Doubt {
 }
 
 /// Arithmetic operations that a certificate may take: some hundred milliseconds.
-pub(super) const BUDGET: u64 = 1 << 25;
+pub(super) const BUDGET: u64 = 30_000_000;
 
 /// A relative error of the thickness (absolute below 1) up to which it counts as certified. It enters every verdict as it is.
 const ENOUGH: f64 = 1e-6;
