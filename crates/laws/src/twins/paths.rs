@@ -237,7 +237,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "weight_behind_the_collision",
             "the walk's weight behind the point that scores, for that before it (0.6995 for 0.8186 in the errata's case)",
             cube,
-            (150_000, Evident::Mean { z: 681.8 }),
+            (300_000, Evident::Mean { z: 964.2 }),
             |run| {
                 let cube = Cube::new();
                 let model = DoubleParticle { albedo: Albedo::default() };
