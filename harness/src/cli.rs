@@ -176,9 +176,12 @@ pub(crate) struct VerifyArguments {
     /// Only the checks of this estimator
     #[arg(long, value_name = "NAME")]
     pub estimator: Option<String>,
-    /// Fewer samples: under ten seconds, with less power
+    /// Fewer samples, with less power
     #[arg(long)]
     pub quick: bool,
+    /// Every check with its p-values as JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,

@@ -167,6 +167,7 @@ pub fn compare(
     let reference = Reference {
         error: truth.error() * unit.scale(),
         moments: Some(closed),
+        variance_bound: variance_bound(&prediction.theory).filter(|_| closed.mean == 1.0),
         scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
         ..Reference::exact(closed.mean)
     };
@@ -236,6 +237,17 @@ fn variance_is_known(theory: &Theory) -> bool {
     // The relative error of a variance of zero is 0/0: no divergence.
     let error = theory.relative_variance_error;
     !theory.log_relative_variance.is_nan() && (error.is_nan() || error <= DIVERGENCE)
+}
+
+/// An upper bound of the variance of one estimate, in units of T²: the closed form with the error of its integral, or what else is
+/// known.
+fn variance_bound(theory: &Theory) -> Option<f64> {
+    let bound = if variance_is_known(theory) {
+        theory.relative_central[0] * (1.0 + theory.relative_variance_error.max(0.0))
+    } else {
+        theory.relative_variance_bound
+    };
+    Some(bound).filter(|bound| bound.is_finite())
 }
 
 /// The closed moments in the unit of the verdict: as they are where that is T itself; where T is no number to divide by,

@@ -30,12 +30,15 @@ mod bounds;
 mod cells;
 mod constant;
 mod empty_space;
+mod enclosure;
 mod error;
 mod expression;
 mod extinction;
 mod gradient_noise;
 mod homogeneous;
 mod inside;
+mod interpolation;
+mod interval;
 mod interval_bounds;
 mod lattice_planes;
 mod medium;
@@ -47,6 +50,7 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod rounding;
 mod spectral;
 mod voxels;
 mod watched;
@@ -59,12 +63,14 @@ pub use bounds::{Bounds, Clip};
 pub use cells::{Cells, LineCells};
 pub use constant::Constant;
 pub use empty_space::EmptySpace;
+pub use enclosure::{Certificate, Certified, Doubt, Enclosed, LineEnclosed, Stretch};
 pub use error::FieldError;
 pub use expression::{ExpressionError, ExpressionFieldError, ExpressionMedium, ExpressionProfile};
 pub use extinction::{
     Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
 };
 pub use homogeneous::Homogeneous;
+pub use interpolation::lerp;
 pub use interval_bounds::IntervalBounds;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
 pub use medium_bounds::{BoxBounds, Boxes};
@@ -75,6 +81,7 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use rounding::rounding_of_difference;
 pub use spectral::{
     Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
     Wavelength,

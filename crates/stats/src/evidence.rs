@@ -5,6 +5,7 @@ use crate::reference::Reference;
 use crate::verdict::MeanTest;
 
 /// What the test of the mean says.
+#[derive(Clone)]
 pub(crate) struct MeanJudgement {
     pub(crate) test: MeanTest,
     pub(crate) outcome: Outcome,
@@ -12,6 +13,20 @@ pub(crate) struct MeanJudgement {
     pub(crate) detectable_relative_bias: Option<f64>,
     pub(crate) samples_needed: Option<f64>,
     pub(crate) reason: String,
+}
+
+impl MeanJudgement {
+    /// No test, or none that says anything.
+    pub(crate) fn not_testable(samples_needed: Option<f64>, reason: String) -> Self {
+        Self {
+            test: MeanTest::NotTestable,
+            outcome: None,
+            p: None,
+            detectable_relative_bias: None,
+            samples_needed,
+            reason,
+        }
+    }
 }
 
 /// A test whose level holds, before its decision.

@@ -3,13 +3,18 @@
 //! The false alarm alpha of the call is split: alpha/2 for the mean, alpha/2 for the variance (Bonferroni, as the two are
 //! dependent). Two-valued samples have one test only, the exact binomial one, which gets all of alpha.
 //!
-//! A rejection stands wherever the level of a test holds, however weak the test. An acceptance needs power as well: a
-//! test that would have missed a relative bias of [`MAX_DETECTABLE_RELATIVE_BIAS`](crate::MAX_DETECTABLE_RELATIVE_BIAS) accepts nothing, it is not testable.
+//! A rejection stands wherever the level of a test holds, however weak the test; a sample's own standard error and shape are no such
+//! test, since they are blind to values that the sample lacks. An acceptance needs power as well: a test that
+//! would have missed a relative bias of [`MAX_DETECTABLE_RELATIVE_BIAS`](crate::MAX_DETECTABLE_RELATIVE_BIAS) accepts nothing, it is not testable.
 //! `sound` follows the mean; a variance without a test is named in the reason, one that differs makes the call unsound.
+//!
+//! Against a reference that is [`Estimated`](crate::Certainty::Estimated) only what was proved of it counts: the mean is rejected
+//! if it is against every value that is not excluded, and accepted if the bounds leave the power to. Its closed moments are not used.
 
 use crate::mean_test::judge_mean;
 use crate::moments::Moments;
-use crate::reference::{Reference, Scores};
+use crate::normal_test::normal_samples;
+use crate::reference::{Certainty, Reference, Scores};
 use crate::variance_test::judge_variance;
 use crate::verdict::{MeanTest, StandardErrorSource, Verdict};
 
@@ -46,6 +51,7 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
         sound: None,
         reason: "not testable: no samples".to_owned(),
         samples_needed: None,
+        normal_samples: f64::INFINITY,
         standard_error_source: StandardErrorSource::Sample,
         mean_test: MeanTest::NotTestable,
     };
@@ -75,6 +81,8 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
         .filter(|&error| error > 0.0 && error.is_finite() && !is_noise(error))
         .map(|error| (mean - reference.mean) / error);
 
+    verdict.normal_samples = normal_samples(measured, reference, 0.5 * alpha);
+
     // The tests.
     let mean_judgement = judge_mean(measured, reference, mean, alpha);
     let variance_judgement = judge_variance(measured, reference, mean, 0.5 * alpha);
@@ -88,8 +96,25 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
     if verdict.sound.is_none() {
         verdict.samples_needed = mean_judgement.samples_needed;
     }
-    verdict.reason = format!("mean {}; variance {}", mean_judgement.reason, variance_judgement.reason);
+    verdict.reason = format!(
+        "{}mean {}; variance {}",
+        uncertified(reference),
+        mean_judgement.reason,
+        variance_judgement.reason
+    );
     verdict
+}
+
+/// What is to be known of an estimated reference before anything that follows from it.
+fn uncertified(reference: &Reference) -> String {
+    let Certainty::Estimated { low, high } = reference.certainty else { return String::new() };
+    let relative = |bound: f64| if reference.mean == 0.0 { bound } else { bound / reference.mean };
+    format!(
+        "the reference is not certified: its quadrature may lack features between its nodes, and proved is only a mean between \
+         {:.3e} and {:.3e} of it; ",
+        relative(low),
+        relative(high)
+    )
 }
 
 /// Two values that are one (a control's transmittance that underflows) leave nothing to count: a constant.
@@ -126,7 +151,9 @@ fn contradiction(measured: &Moments, reference: &Reference, mean: f64) -> Option
             })
         }
         Scores::Bounded { minimum: low, maximum: high } => {
-            let tolerance = SCORE_TOLERANCE * (low.abs().max(high.abs()));
+            // A bound that is none says nothing of the size of rounding: the mean does.
+            let size = |bound: f64| if bound.is_finite() { bound.abs() } else { reference.mean.abs() };
+            let tolerance = SCORE_TOLERANCE * size(low).max(size(high));
             let stranger = if minimum < low - tolerance { minimum } else { maximum };
             (stranger < low - tolerance || stranger > high + tolerance)
                 .then(|| format!("a sample of {stranger:e} lies outside [{low:e}, {high:e}]"))

@@ -226,6 +226,17 @@ impl Moments {
         self.shape_exists().then(|| self.count as f64 * (self.m4 / self.m2) / self.m2 - 3.0)
     }
 
+    /// Sums of (x - c)^k over the values, k = 2, 3, 4; `None` if there are none.
+    #[must_use]
+    pub fn sums_about(&self, c: f64) -> Option<[f64; 3]> {
+        let (n, d) = (self.count as f64, self.mean - c);
+        (self.count > 0).then_some([
+            self.m2 + n * d * d,
+            self.m3 + d * (3.0 * self.m2 + n * d * d),
+            self.m4 + d * (4.0 * self.m3 + d * (6.0 * self.m2 + n * d * d)),
+        ])
+    }
+
     /// Least value; `None` if there are none.
     #[must_use]
     pub fn minimum(&self) -> Option<f64> {

@@ -119,3 +119,17 @@ proptest! {
         prop_assert_eq!(bits(&right), bits(&moments));
     }
 }
+
+#[test]
+fn sums_about_any_point() {
+    let values = [0.3, -1.2, 4.0, 2.5, 0.0];
+    let moments = Moments::from_slice(&values);
+    for c in [-2.0, 0.0, 1.12, 7.5] {
+        let found = moments.sums_about(c).unwrap();
+        for (k, found) in (2..).zip(found) {
+            let exact: f64 = values.iter().map(|x| (x - c).powi(k)).sum();
+            assert_relative_eq!(found, exact, max_relative = 1e-13);
+        }
+    }
+    assert_eq!(Moments::new().sums_about(1.0), None);
+}

@@ -18,9 +18,9 @@ pub enum Scores {
     },
     /// A sample lies in [minimum, maximum], up to rounding.
     Bounded {
-        /// Lower bound.
+        /// Lower bound; −∞ for a law with an upper one only.
         minimum: f64,
-        /// Upper bound.
+        /// Upper bound; ∞ for a law with a lower one only, such as that of weights which are never negative.
         maximum: f64,
     },
     /// Nothing is known.
@@ -42,6 +42,15 @@ pub enum Certainty {
     },
 }
 
+/// What is known of values so rare and so large that a sample may lack them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tails {
+    /// Nothing: the sample's own standard error and shape are blind to them, and do not reject.
+    Unknown,
+    /// There are none that matter at this N, by the choice of what is sampled: the sample's own standard error and shape are believed.
+    Mild,
+}
+
 /// The truth that a sample should have as its mean, with its own error and what is known of the law of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
@@ -53,15 +62,33 @@ pub struct Reference {
     pub certainty: Certainty,
     /// Moments of one sample in closed form, where there is one. Their mean is taken to be `mean`.
     pub moments: Option<ClosedMoments>,
+    /// An upper bound of the variance of one sample: in the place of a closed form, or above one with its error.
+    pub variance_bound: Option<f64>,
     /// The values that one sample can take.
     pub scores: Scores,
+    /// What is known of the tails of its law.
+    pub tails: Tails,
 }
 
 impl Reference {
     /// An exact mean and nothing else known.
     #[must_use]
     pub const fn exact(mean: f64) -> Self {
-        Self { mean, error: 0.0, certainty: Certainty::Certified, moments: None, scores: Scores::Unbounded }
+        Self {
+            mean,
+            error: 0.0,
+            certainty: Certainty::Certified,
+            moments: None,
+            variance_bound: None,
+            scores: Scores::Unbounded,
+            tails: Tails::Unknown,
+        }
+    }
+
+    /// The same for a law that is known to have mild tails.
+    #[must_use]
+    pub const fn with_mild_tails(self) -> Self {
+        Self { tails: Tails::Mild, ..self }
     }
 
     /// Success probability mean/high of a two-valued sample, its rounding beyond [0, 1] cut off; else `None`.
@@ -73,13 +100,34 @@ impl Reference {
         }
     }
 
-    /// The moments of one sample: of two values they follow from the mean, else as given.
+    /// The moments of one sample: of two values they follow from the mean, else as given. `None` where the mean itself is
+    /// estimated: what misses a feature of the law misses it in every moment.
     #[must_use]
     pub fn closed_moments(&self) -> Option<ClosedMoments> {
-        match (self.scores, self.success_probability()) {
-            (Scores::TwoValued { high }, Some(p)) => Some(ClosedMoments::two_valued(high, p)),
+        match (self.certainty, self.scores, self.success_probability()) {
+            (Certainty::Estimated { .. }, ..) => None,
+            (_, Scores::TwoValued { high }, Some(p)) => Some(ClosedMoments::two_valued(high, p)),
             _ => self.moments,
         }
+    }
+
+    /// Greatest distance of the true mean from `mean` that is not excluded: the error, or that of the certified bounds.
+    #[must_use]
+    pub fn uncertainty(&self) -> f64 {
+        match self.certainty {
+            Certainty::Certified => self.error,
+            Certainty::Estimated { low, high } => (self.mean - low).max(high - self.mean).max(self.error),
+        }
+    }
+
+    /// The interval in which the true mean lies for certain, rounding included.
+    #[must_use]
+    pub fn interval(&self) -> (f64, f64) {
+        let (low, high) = match self.certainty {
+            Certainty::Certified => (self.mean - self.error, self.mean + self.error),
+            Certainty::Estimated { low, high } => (low, high),
+        };
+        (low - self.rounding(), high + self.rounding())
     }
 
     /// Absolute rounding error granted to a sample and to their mean, ROUNDING (1 + |ln |mean||) |mean|; zero for zero.
@@ -89,10 +137,10 @@ impl Reference {
         if size == 0.0 { 0.0 } else { ROUNDING * (1.0 + size.ln().abs()) * size }
     }
 
-    /// What a mean may deviate without any evidence against it: the reference's error and rounding.
+    /// What a mean may deviate without any evidence against it: the reference's uncertainty and rounding.
     #[must_use]
     pub fn allowance(&self) -> f64 {
-        self.error + self.rounding()
+        self.uncertainty() + self.rounding()
     }
 
     /// Whether a standard deviation of one sample is nothing but rounding.
@@ -104,7 +152,7 @@ impl Reference {
 
 #[cfg(test)]
 mod tests {
-    use super::{Reference, Scores};
+    use super::{Certainty, Reference, Scores};
     use approx::assert_relative_eq;
 
     #[test]
@@ -113,6 +161,19 @@ mod tests {
         assert_relative_eq!(Reference::exact((-99.0f64).exp()).rounding(), 1e-10 * (-99.0f64).exp());
         assert_eq!(Reference::exact(0.0).rounding(), 0.0);
         assert_relative_eq!(Reference { error: 1e-3, ..Reference::exact(-1.0) }.allowance(), 1e-3 + 1e-12);
+    }
+
+    #[test]
+    fn an_estimated_mean_has_no_moments_and_the_certified_interval() {
+        let certainty = Certainty::Estimated { low: 0.25, high: 1.5 };
+        let reference = Reference { certainty, error: 1e-3, ..Reference::exact(1.0) };
+        assert_eq!(reference.uncertainty(), 0.75);
+        assert_eq!(reference.interval(), (0.25 - 1e-12, 1.5 + 1e-12));
+        let scores = Scores::TwoValued { high: 2.0 };
+        assert_eq!(Reference { scores, ..reference }.closed_moments(), None);
+        assert_eq!(Reference { certainty: Certainty::Certified, ..reference }.uncertainty(), 1e-3);
+        let nothing = Certainty::Estimated { low: f64::NEG_INFINITY, high: f64::INFINITY };
+        assert_eq!(Reference { certainty: nothing, ..reference }.uncertainty(), f64::INFINITY);
     }
 
     #[test]

@@ -16,8 +16,10 @@ pub enum MeanTest {
     Binomial,
     /// A z-score, normal to a stated accuracy.
     Normal,
-    /// Bernstein's inequality.
+    /// Bernstein's inequality, whose power is known.
     Bernstein,
+    /// A rejection by an inequality that holds for every shape of the law.
+    Inequality,
     /// Agreement to rounding, for a law without variance.
     Rounding,
     /// Broken facts: a value that the law excludes.
@@ -39,8 +41,8 @@ pub struct Verdict {
     pub mean_p: Option<f64>,
     /// p-value of the test of the variance; `None` if there is none that holds its level.
     pub variance_p: Option<f64>,
-    /// Smallest |bias|/|reference| of the mean that this call would have rejected with probability 0.99; `None` for a
-    /// reference of zero or without a test.
+    /// Smallest |bias|/|reference| of the mean with which this call would have agreed with a probability below 0.01; `None`
+    /// for a reference of zero or without a test.
     pub detectable_relative_bias: Option<f64>,
     /// Whether mean and variance agree with the reference; `None` = not testable at this N.
     pub sound: Option<bool>,
@@ -48,6 +50,9 @@ pub struct Verdict {
     pub reason: String,
     /// Where `sound` is `None`: the N that would make the mean testable, possibly infinite; `None` if that is unknown.
     pub samples_needed: Option<f64>,
+    /// The N from which on a normal approximation of the mean holds at this level, by the shape of the law where that is known,
+    /// else of the sample; infinite for a shape that is neither. How near to it a run comes is how much another seed may change.
+    pub normal_samples: f64,
     /// Where the standard error of the mean comes from.
     pub standard_error_source: StandardErrorSource,
     /// How the mean was tested.

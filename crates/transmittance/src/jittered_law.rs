@@ -62,6 +62,7 @@ pub(crate) fn theory_of<F: Extinction>(
         relative_central: law.relative_central(),
         log_relative_variance: law.log_relative_variance(),
         relative_variance_error: if error == 0.0 { 0.0 } else { error / -(-law.log_second()).exp_m1() },
+        relative_variance_bound: f64::INFINITY,
         lookups,
     }
 }

@@ -41,6 +41,7 @@
 //! assert!((mean - (-3.0_f64).exp()).abs() < 0.004);
 //! ```
 
+mod adaptive_law;
 mod adaptive_ratio;
 mod bidirectional;
 mod combs;

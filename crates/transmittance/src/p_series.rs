@@ -37,7 +37,7 @@ pub enum PSeriesVersion {
 ///
 /// Where t_c = 0 the first three P_k vanish (not for `Cumulative`): admitted for σ_t = 0 only.
 ///
-/// **Moments.** `Ratio`: all, by [`ProductLaw`]. `Cumulative`: none. For the others the second moment is usually written as a
+/// **Moments.** `Ratio`: all, by [`ProductLaw`]. `Cumulative`: a bound of the variance. For the others the second moment is usually written as a
 /// double sum; here the variance, all of it positive terms. (5) Follow the expectation of the estimate given what is known.
 /// With A_k = Y_1 … Y_k/k! and r_k = Σ_j y^j k!/(k + j)!, so that r_k = 1 + y/(k + 1) r_{k+1}, and all orders from k on are expected to
 /// give A_k/P_k r_k once k is reached. (6) Whether k is reached from k − 1 is a coin of probability P_k/P_{k−1} that decides
@@ -45,11 +45,16 @@ pub enum PSeriesVersion {
 ///
 /// > Var/T² = exp(−2y) Σ_{k ≥ 1} q^{k−1}/k!² r_k² (v + y² (1 − P_k/P_{k−1}))/P_k,   v = S ∫ (σ_t − τ/S)² ds.
 ///
-/// It is finite always, as k! P_k falls no faster than a power.
+/// It is finite always, as k! P_k falls no faster than a power. (7) For `Cumulative` only a bound: with w_k the weight of term k, of
+/// magnitude at least 1 while it lives, the point k decides about w_{k−1} (Y_k − y)/k · r_k, and the coin, given a = w_{k−1} Y_k/k
+/// and tossed for |a| < 1, about r_k times a variance of |a| − a², at most 1/4. As E|w_k| = E|a| = p^k/k!, p = E|Y|,
+///
+/// > Var/T² ≤ exp(−2y) Σ_{k ≥ 1} r_k² (m_{k−1} v/k² + c_k),   c_k = min(p^k/k!, min(1, p^{k−1}/(k−1)!)/4),   m_k = m_{k−1} q/k² + c_k, m_0 = 1.
 ///
 /// **Cost.** Σ_{k ≥ 1} P_k look-ups; t_c, a Poisson number, for `Ratio` and `NextFlight`; for `Cumulative` it has no closed form.
 ///
-/// **Orders** have no cap, and no term over- or underflows before the estimate does.
+/// **Orders** have no cap, and no term over- or underflows before the estimate does. **Digits** are another matter: with a pivot far below
+/// τ the terms grow to exp(τ) and cancel, so that a sum has lost its digits for τ − t_c above some 36, in any arithmetic of 53 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PSeries {
     version: PSeriesVersion,
@@ -118,10 +123,10 @@ fn surely_drawn(mean: f64) -> u32 {
     let mut sum = 0.0;
     let mut k = 0;
     loop {
-        sum += mass.over(&SignedProduct::ONE);
+        sum += mass.value();
         k += 1;
         // Rounding may leave the sum of a very large mean below the goal: the mass is then past its mode and gone.
-        if sum >= GOAL || (f64::from(k) > mean && mass.over(&SignedProduct::ONE) < 1e-18) {
+        if sum >= GOAL || (f64::from(k) > mean && mass.value() < 1e-18) {
             return k;
         }
         mass.multiply(mean / f64::from(k));
@@ -155,7 +160,7 @@ impl PSeries {
 
     fn cmf<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         let mut term = self.first;
-        let mut sum = term.over(&SignedProduct::ONE);
+        let mut sum = term;
         for k in 1_u32.. {
             let mut scale = 1.0 / f64::from(k);
             if k > self.sure {
@@ -166,14 +171,14 @@ impl PSeries {
                 scale /= go_on;
             }
             term.multiply((self.pivot - Self::point(field, source)) * scale);
-            sum += term.over(&SignedProduct::ONE);
+            sum.add(&term);
         }
-        sum
+        sum.value()
     }
 
     fn cumulative<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         let mut term = self.first;
-        let mut sum = term.over(&SignedProduct::ONE);
+        let mut sum = term;
         for k in 1_u32.. {
             term.multiply((self.pivot - Self::point(field, source)) / f64::from(k));
             let go_on = term.over(&self.first).abs();
@@ -183,9 +188,9 @@ impl PSeries {
                 }
                 term.multiply(1.0 / go_on);
             }
-            sum += term.over(&SignedProduct::ONE);
+            sum.add(&term);
         }
-        sum
+        sum.value()
     }
 
     fn ratio<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
@@ -193,7 +198,7 @@ impl PSeries {
         for _ in 0..poisson(self.pivot, source) {
             product.multiply(1.0 - Self::point(field, source) / self.pivot);
         }
-        product.over(&SignedProduct::ONE)
+        product.value()
     }
 
     /// With p_k the Poisson probabilities and h_k = p_k/P_k, term k is h_k Π_{i ≤ k} (1 − X_i/t_c): the sum is nested, and
@@ -202,12 +207,13 @@ impl PSeries {
     fn next_flight<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         let last = poisson(self.pivot, source);
         let mut reciprocal = remainder(self.pivot, f64::from(last));
-        let mut sum = 1.0 / reciprocal;
+        let mut sum = SignedProduct::of(1.0 / reciprocal);
         for k in (1..=last).rev() {
             reciprocal = 1.0 + self.pivot / f64::from(k) * reciprocal;
-            sum = 1.0 / reciprocal + (1.0 - Self::point(field, source) / self.pivot) * sum;
+            sum.multiply(1.0 - Self::point(field, source) / self.pivot);
+            sum.add(&SignedProduct::of(1.0 / reciprocal));
         }
-        sum
+        sum.value()
     }
 }
 
@@ -302,6 +308,29 @@ impl PSeries {
     }
 }
 
+impl PSeries {
+    /// The bound (7) for the variance `spread` = v and p = `magnitude`; infinite where it overflows, or would take too many orders.
+    fn cumulative_bound(&self, y: f64, spread: f64, magnitude: f64) -> f64 {
+        let q = y * y + spread;
+        // Beyond these a term is a small part of the one before.
+        let orders = 8.0 * q.sqrt().max(y.abs()) + 100.0;
+        if orders.is_nan() || orders > MOST_ORDERS {
+            return f64::INFINITY;
+        }
+        let remainders = log_remainders(y, orders as usize);
+        let (mut sum, mut square, mut lives) = (0.0, 1.0, 1.0);
+        for (k, remainder) in remainders.iter().enumerate().skip(1) {
+            let order = k as f64;
+            let arrives = lives * magnitude / order;
+            let coin = f64::min(arrives, 0.25 * f64::min(1.0, lives));
+            sum += (2.0 * (remainder - y)).exp() * (square * spread / (order * order) + coin);
+            square = square * q / (order * order) + coin;
+            lives = arrives;
+        }
+        if sum.is_nan() { f64::INFINITY } else { sum }
+    }
+}
+
 impl<F: Extinction> ClosedForm<F> for PSeries {
     fn theory(
         &self,
@@ -311,7 +340,22 @@ impl<F: Extinction> ClosedForm<F> for PSeries {
     ) -> Theory {
         let (pivot, length) = (self.pivot, quadrature.field().length());
         match self.version {
-            PSeriesVersion::Cumulative => Theory::mean_only(f64::NAN),
+            PSeriesVersion::Cumulative => {
+                let mean = if length > 0.0 { optical_thickness / length } else { 0.0 };
+                let spread =
+                    quadrature.integrate(tolerance, |_, sigma_t| [length * (sigma_t - mean).powi(2)]);
+                let (v, y) = (spread.value[0] + spread.error[0], pivot - optical_thickness);
+                // |Y| has kinks where Y vanishes: a rough integral and its error.
+                let of_magnitude = |_: f64, sigma_t: f64| [(pivot - length * sigma_t).abs() / length];
+                let magnitude = quadrature.integrate(Tolerance::to(1e-3), of_magnitude);
+                let most = (y * y + v).sqrt();
+                let magnitude =
+                    if length > 0.0 { f64::min(most, magnitude.value[0] + magnitude.error[0]) } else { most };
+                Theory {
+                    relative_variance_bound: self.cumulative_bound(y, v, magnitude),
+                    ..Theory::mean_only(f64::NAN)
+                }
+            }
             PSeriesVersion::Ratio if pivot == 0.0 => of_variance(0.0, 0.0, 0.0, 0.0),
             PSeriesVersion::Ratio => {
                 let collisions = quadrature.integrate(tolerance, |_, sigma_t| {

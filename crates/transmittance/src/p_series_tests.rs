@@ -4,7 +4,7 @@ use crate::test_support::{agrees, mean, mean_and_square, seed_ray, theory_of};
 use PSeriesVersion::{Cmf, Cumulative, NextFlight, Ratio};
 use approx::assert_relative_eq;
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Constant, Counted, OpticalThickness, PiecewiseConstant, Vacuum};
+use fairflight_media::{Breakpoints, Constant, Counted, OpticalThickness, PiecewiseConstant, Vacuum};
 use fairflight_sources::{Scripted, Seeded};
 
 const VERSIONS: [PSeriesVersion; 4] = [Cmf, Cumulative, Ratio, NextFlight];
@@ -200,4 +200,30 @@ fn a_vacuum_and_what_is_no_pivot() {
         assert_eq!(PSeries::new(version, -1.0), Err(PivotError::Negative(-1.0)));
         assert_eq!(PSeries::new(version, f64::INFINITY), Err(PivotError::NotFinite(f64::INFINITY)));
     }
+}
+
+#[test]
+fn the_variance_of_the_cumulative_version_is_below_its_bound_and_not_far() {
+    fn check<F: Breakpoints + OpticalThickness + Copy>(field: F, pivots: &[f64], seed: u64) {
+        let transmittance = (-field.optical_thickness(0.0, field.length())).exp();
+        for &pivot in pivots {
+            let estimator = PSeries::new(Cumulative, pivot).unwrap();
+            let bound = theory_of(field, &estimator).relative_variance_bound;
+            let mut source = Seeded::new(seed);
+            let (variance, error) =
+                mean(100_000, || (estimator.estimate(&field, &mut source) / transmittance - 1.0).powi(2));
+            assert!(variance - 5.0 * error < bound, "{pivot}: {variance} above {bound}");
+            assert!(bound < 3.0 * variance, "{pivot}: {variance} far below {bound}");
+        }
+    }
+    check(&steps(), &[0.3, 1.4, 2.5, 4.0], 31);
+    check(seed_ray(), &[3.0, 6.0], 32);
+    // A perfect pivot: nothing varies.
+    let constant = Constant::new(0.7, 3.0).unwrap();
+    let theory = theory_of(&constant, &PSeries::new(Cumulative, 0.7 * 3.0).unwrap());
+    assert!(theory.relative_variance_bound < 1e-12);
+    // A spike of which 10^4 points see less than one: no bound that would help.
+    let spike = PiecewiseConstant::new(vec![0.0, 1.0, 1.000_01, 2.0], vec![0.1, 4e4, 0.1]).unwrap();
+    let theory = theory_of(&spike, &PSeries::new(Cumulative, 1.0).unwrap());
+    assert!(theory.relative_variance_bound > 1e100);
 }

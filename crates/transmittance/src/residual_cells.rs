@@ -125,6 +125,7 @@ impl<F: BoundedInCells> ClosedForm<F> for ResidualCells {
             log_relative_variance: law.log_relative_variance(),
             // d Var / Var = dJ_2 exp(J_2) / (exp(J_2) − 1)
             relative_variance_error: collisions.error[0] / -(-collisions.value[0]).exp_m1(),
+            relative_variance_bound: f64::INFINITY,
             lookups: cells.iter().zip(widths).map(|(cell, width)| self.rate * cell.range() * width).sum(),
         }
     }

@@ -15,6 +15,8 @@ pub struct Theory {
     pub log_relative_variance: f64,
     /// The absolute error of the variance's integral, relative to the variance.
     pub relative_variance_error: f64,
+    /// An upper bound of Var / T^2 where the variance has no closed form; infinite where none is known.
+    pub relative_variance_bound: f64,
     /// The expected number of look-ups of one estimate.
     pub lookups: f64,
 }
@@ -29,6 +31,7 @@ impl Theory {
             relative_central: [f64::NAN; HIGHEST_MOMENT - 1],
             log_relative_variance: f64::NAN,
             relative_variance_error: f64::NAN,
+            relative_variance_bound: f64::INFINITY,
             lookups,
         }
     }

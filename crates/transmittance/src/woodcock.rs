@@ -76,6 +76,7 @@ impl<F: Majorant> ClosedForm<F> for Woodcock {
             relative_central: law.relative_central(),
             log_relative_variance: law.log_relative_variance(),
             relative_variance_error: 0.0,
+            relative_variance_bound: f64::INFINITY,
             lookups: expected_lookups(quadrature, tolerance),
         }
     }

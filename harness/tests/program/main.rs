@@ -6,10 +6,12 @@ mod common;
 mod estimate;
 #[cfg(unix)]
 mod interrupt;
+mod lawful_runs;
 mod passes;
 mod refusals;
 mod render;
 mod render_refusals;
 mod report;
 mod surfaces;
+mod verdicts;
 mod virtual_lights;

@@ -1,6 +1,6 @@
 //! Hero wavelength sampling: one wavelength decides, all share the path, the balance heuristic weighs them (wilkie-2014).
 
-use super::flight::{magnitude, pick};
+use super::flight::{centred, magnitude, pick};
 use super::{SpectralFlight, SpectralFreeFlight};
 use crate::ClosedForm;
 use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race};
@@ -62,7 +62,7 @@ where
         source: &mut S,
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.majorant.length(), "prepared for another profile");
-        let mut weights = incoming;
+        let (mut weights, unit) = centred(incoming);
         let hero = pick(&weights, source);
         let mut s = 0.0;
         while let Some(next) = self.majorant.invert(s, source.next_exponential()) {
@@ -71,11 +71,12 @@ where
             let ratios = field.sigma_t(s).map(|sigma| sigma / majorant);
             // By the same ratio that weighs: an event that is drawn has e_hero > 0, and the sum below too.
             if source.next_uniform() < ratios[hero] {
-                return SpectralFlight::Collided { distance: s, weights: balanced(&weights, &ratios) };
+                let weights = balanced(&weights, &ratios).map(|weight| weight * unit);
+                return SpectralFlight::Collided { distance: s, weights };
             }
             weights = balanced(&weights, &ratios.map(|r| 1.0 - r));
         }
-        SpectralFlight::Escaped { weights }
+        SpectralFlight::Escaped { weights: weights.map(|weight| weight * unit) }
     }
 
     #[inline]

@@ -242,7 +242,7 @@ fn add_up<const K: usize>(integrals: &[[PanelIntegral; K]], tolerance: Tolerance
 }
 
 /// Neumaier's sum: tens of thousands of panels lose no digits.
-pub(super) fn compensated_sum(terms: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn compensated_sum(terms: impl Iterator<Item = f64>) -> f64 {
     let (mut sum, mut carry) = (0.0_f64, 0.0);
     for term in terms {
         let next = sum + term;

@@ -53,6 +53,7 @@ impl Erased for Exact {
             relative_central: [0.0; HIGHEST_MOMENT - 1],
             log_relative_variance: f64::NEG_INFINITY,
             relative_variance_error: 0.0,
+            relative_variance_bound: f64::INFINITY,
             lookups: 0.0,
         }
     }
