@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(source.remaining(), 0);
         // The first collision is survived at 0.25 or above, ended at below.
         let field = Bounded::new(Constant::new(0.5, 3.0).unwrap(), 2.0).unwrap();
-        let mut source = Scripted::new([variate(1.0), 0.25, variate(3.0), 0.2]);
+        let mut source = Scripted::new([variate(1.0), 0.25, variate(3.0), 0.25_f64.next_down()]);
         let exact = (-6.0_f64).exp() + (-5.0_f64).exp();
         assert_relative_eq!(DELTA.estimate(&field, &mut source), exact, max_relative = 1e-12);
     }

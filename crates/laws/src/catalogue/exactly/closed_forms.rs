@@ -3,11 +3,11 @@
 use super::super::media::{analytic_cosine, voxels};
 use super::super::specimen::SpecimenField;
 use super::{Check, LAWFUL, check};
-use crate::CheckResult;
 use crate::exact::orders::{self, mean_and_variance};
 use crate::exact::renewal::{self, Scoring, relative_variance};
 use crate::exact::thickness::{self, deviation_of_integral, deviation_of_inverse};
 use crate::exact::{agree, greatest};
+use crate::{CheckResult, Kind};
 use fairflight_freeflight::{FreeFlight, Inversion, Newton, Regular};
 use fairflight_media::{
     Bounded, Breakpoints, Constant, Majorant, OpticalThickness, PiecewiseConstant, PiecewiseLinear,
@@ -41,11 +41,13 @@ pub(super) fn checks() -> Vec<Check> {
     checks.push(variance("next flight", "ratio", Scoring::Ratio, NextFlight::new(NextFlightVersion::Ratio)));
     checks.push(variance("next flight", "delta", Scoring::Delta, NextFlight::new(NextFlightVersion::Delta)));
     checks.push(variance("unidirectional", "balance", Scoring::Unidirectional, Unidirectional));
-    checks.push(check("mean of combs", "combs", "piecewise linear", mean_of_combs));
+    checks.push(
+        check("mean of combs", "combs", "piecewise linear", mean_of_combs).about([Kind::UnbiasedRayMarching]),
+    );
     for stop in [0.2, 0.9] {
-        checks.push(check(&format!("orders of combs, stop {stop}"), "combs", "two cells", move || {
-            orders(stop)
-        }));
+        let name = format!("orders of combs, stop {stop}");
+        let orders = check(&name, "combs", "two cells", move || orders(stop));
+        checks.push(orders.about([Kind::UnbiasedRayMarching]));
     }
     checks
 }
@@ -94,6 +96,7 @@ where
         ];
         agree(greatest(deviations), renewal::GRANTED)
     })
+    .about([Kind::NextFlight])
 }
 
 fn deviation_of_variance<'f, F, E>(field: &'f F, scoring: Scoring, estimator: E) -> f64

@@ -1,9 +1,9 @@
 //! Closed variances on steps of constant extinction, where each is an expression of a line, a sum, or an average over all draws.
 
 use super::{Check, LAWFUL, check};
-use crate::CheckResult;
 use crate::exact::decisions::expectations;
 use crate::exact::{agree, greatest};
+use crate::{CheckResult, Kind};
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{
     Bounded, Constant, OpticalThickness, PiecewiseConstant, RayQuadrature, Tolerance, Vacuum,
@@ -27,7 +27,8 @@ pub(super) fn checks() -> Vec<Check> {
         on_steps("variance of woodcock", "woodcock", || {
             // A success of probability T.
             [(theory(&Woodcock), thickness().exp_m1())]
-        }),
+        })
+        .about([Kind::Woodcock]),
         on_steps("variance of tracking", "double particle, single particle", || {
             let double = DoubleParticle { albedo: Albedo::default() };
             // szirmay-kalos-2017 eq. 16: E[W²] − 1 = r² − 2r, r² above the square of the mean.
@@ -47,7 +48,8 @@ pub(super) fn checks() -> Vec<Check> {
                 (theory(&residual), integral(|sigma| (sigma - 0.4).powi(2) / 0.5).exp_m1()),
                 (theory(&survives), of_single.exp_m1()),
             ]
-        }),
+        })
+        .about([Kind::DoubleParticle, Kind::SingleParticle]),
         on_steps("variance of points", "generalised poisson, p_series", || {
             // Points anywhere, X = 2 σ_t: of N ~ Poisson(λ) factors (p − X)/λ, and of N ~ Poisson(p) factors 1 − X/p.
             let (pivot, rate, length) = (1.3, 0.8, 2.0);
@@ -59,8 +61,10 @@ pub(super) fn checks() -> Vec<Check> {
                 (theory(&series(PSeriesVersion::Ratio, pivot)), ratio.exp_m1()),
                 (theory(&series(PSeriesVersion::NextFlight, pivot)), double_sum(pivot)),
             ]
-        }),
-        check("mean and variance of telescoping", "telescoping", "four cells", telescoping),
+        })
+        .about([Kind::GeneralisedPoisson, Kind::PSeries]),
+        check("mean and variance of telescoping", "telescoping", "four cells", telescoping)
+            .about([Kind::Telescoping]),
     ]
 }
 
