@@ -1,7 +1,7 @@
 //! Free flights with an arbitrary sampling extinction: the single particle model up to its first scattering
 //! (szirmay-kalos-2017 eq. 9 and 12).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, powers};
+use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, powers, times_exp};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_collision::{
     Albedo, AlbedoError, CollisionModel, Outcome, SingleOutcome, SingleParticle, Version,
@@ -140,7 +140,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
                 let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; HIGHEST_MOMENT] };
                 let (scattered, scores) = (self.model.scattered(r), powers(score(s)));
                 std::array::from_fn(|i| {
-                    sampling * scattered.moment(i as i32 + 1) * growth[i].exp() * scores[i]
+                    times_exp(sampling * scattered.moment(i as i32 + 1), growth[i], scores[i])
                 })
             },
         )

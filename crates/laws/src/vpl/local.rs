@@ -92,6 +92,21 @@ impl Local {
         Reference { error: (fine - coarse).abs(), ..Reference::exact(connections + fine) }
     }
 
+    /// Bounds of the bounded connections at a vertex, and of what one in the region gets of the point lights.
+    #[must_use]
+    pub(crate) fn greatest(&self) -> (f64, f64) {
+        let g = self.mean_cosine;
+        let scatters = FRAC_1_PI.max((1.0 + g) / (4.0 * PI * (1.0 - g) * (1.0 - g)));
+        let power: f64 = self.vpls.iter().map(|vpl| vpl.power).sum();
+        let radius = 1.0 / self.bound.sqrt();
+        let emitters = self.lights.sources.iter().map(|light| {
+            let Source::Point { position, power } = light else { return 0.0 };
+            let distance = position.distance(self.y.position) - radius;
+            power / (4.0 * PI * distance * distance) * scatters
+        });
+        (power * scatters * scatters * self.bound, emitters.sum())
+    }
+
     /// What bounding takes away from all light at y that is scattered once more on the way.
     fn compensation(&self, factor: u32) -> f64 {
         let (turns, cosines, radii) = (36 * factor, 48 * factor, 24 * factor);

@@ -124,3 +124,6 @@ macro_rules! behind_a_pointer {
 }
 
 behind_a_pointer!(&M, Arc<M>);
+
+#[cfg(test)]
+mod tests;

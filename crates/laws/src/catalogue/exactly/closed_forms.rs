@@ -41,11 +41,12 @@ pub(super) fn checks() -> Vec<Check> {
     checks.push(variance("next flight", "ratio", Scoring::Ratio, NextFlight::new(NextFlightVersion::Ratio)));
     checks.push(variance("next flight", "delta", Scoring::Delta, NextFlight::new(NextFlightVersion::Delta)));
     checks.push(variance("unidirectional", "balance", Scoring::Unidirectional, Unidirectional));
-    let mean = check("mean of combs", "combs", "piecewise linear", mean_of_combs);
-    checks.push(mean.about([Kind::UnbiasedRayMarching]));
+    checks.push(
+        check("mean of combs", "combs", "piecewise linear", mean_of_combs).about([Kind::UnbiasedRayMarching]),
+    );
     for stop in [0.2, 0.9] {
-        let orders =
-            check(&format!("orders of combs, stop {stop}"), "combs", "two cells", move || orders(stop));
+        let name = format!("orders of combs, stop {stop}");
+        let orders = check(&name, "combs", "two cells", move || orders(stop));
         checks.push(orders.about([Kind::UnbiasedRayMarching]));
     }
     checks

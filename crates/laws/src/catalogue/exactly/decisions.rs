@@ -6,7 +6,7 @@ use crate::exact::decisions::expectation;
 use crate::exact::{agree, greatest};
 use crate::{CheckResult, Kind, catalogue::Law};
 use fairflight_collision::{Albedo, SingleOutcome, SingleParticle, Version, Woodcock as WoodcockModel};
-use fairflight_freeflight::{FreeFlight, Woodcock as WoodcockFlight};
+use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock as WoodcockFlight};
 use fairflight_media::{Bounded, Bounds, Constant, Homogeneous, Line, phase::Isotropic};
 use fairflight_paths::{Uniform, Walk};
 use fairflight_scene::Volume;
@@ -50,6 +50,7 @@ pub(super) fn checks() -> Vec<Check> {
                 (if collides { 1.0 } else { 0.0 }, share)
             })
         }),
+        check("decision/free flight by jittered", "free flight by jittered", "constant", jittered_flight),
         check("decision/roulette of a walk", "roulette of walks", "homogeneous", roulette_of_a_walk),
     ]
 }
@@ -85,6 +86,26 @@ fn one_collision(walk: impl Fn(f64, &mut Scripted, Bounded<Constant>) -> (f64, f
         (found / expected - 1.0).abs()
     });
     agree(greatest(worst), GRANTED)
+}
+
+/// A flight of one stratum, its candidate beyond the tentative collision on the way to it: either decision by itself. The candidate is
+/// accepted with probability h σ_t, and the flight to it survives with probability 1 − σ_t over the majorant.
+fn jittered_flight() -> CheckResult {
+    let majorant = 0.9;
+    let there = -(-majorant * COLLISION).exp_m1();
+    let deviation = |share: f64| {
+        let field = Constant::new(share * majorant, 1.0).expect(LAWFUL);
+        let field = Bounded::new(field, majorant).expect(LAWFUL);
+        let collides = |variates: [f64; 5]| {
+            let flight = JitteredFlight::new(1.0).expect(LAWFUL).sample(&field, &mut Scripted::new(variates));
+            if flight.distance().is_some() { 1.0 } else { 0.0 }
+        };
+        // Its place, its acceptance, the flight to it, the decision there, and the rest of the flight.
+        let accepted = expectation(|u| collides([0.8, u, LARGEST_VARIATE, 0.0, 0.0]));
+        let survives = expectation(|u| collides([0.8, 0.0, there, u, LARGEST_VARIATE]));
+        (accepted / (share * majorant) - 1.0).abs().max((survives / (1.0 - share) - 1.0).abs())
+    };
+    agree(greatest(SHARES.map(deviation)), GRANTED)
 }
 
 /// **Law.** Roulette below an energy changes no expectation: a walk whose first collision scatters all that is left of it, the albedo

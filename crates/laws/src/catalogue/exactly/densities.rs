@@ -8,7 +8,7 @@ use crate::exact::{agree, greatest};
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh, Schlick};
 use fairflight_media::{Line, PhaseFunction};
 use fairflight_scene::surface::{Rectangle, Sphere};
-use fairflight_scene::{Background, EnvironmentMap, Lights, Shape, Source, cosine_hemisphere};
+use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, Shape, Source, cosine_hemisphere};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -48,6 +48,7 @@ pub(super) fn checks() -> Vec<Check> {
         towards("sphere from inside", sphere(), dvec3(0.2, 0.1, 0.25)),
         check("density/environment map", "directions of an environment map", "none", pixels),
         check("density/photons", "photons of lights", "none", photons),
+        check("density/camera", "rays through a pixel", "none", camera),
     ]
 }
 
@@ -79,6 +80,20 @@ fn seen(shape: &Shape, point: DVec3) -> CheckResult {
     };
     let map = |u, v| shape.sample_towards(point, u, v).map(|sample| sample.direction);
     agree(deviation(map, density), GRANTED)
+}
+
+/// **Law.** A pixel is the mean over its area: the importance of a point, times its distance squared, is the density per solid angle of the
+/// rays through the pixel.
+fn camera() -> CheckResult {
+    let (origin, distance) = (dvec3(1.0, 2.0, 3.0), 7.0);
+    let camera =
+        Camera::new(origin, dvec3(-4.0, 0.5, 9.0), dvec3(0.1, 1.0, 0.3), 65.0, [4, 3]).expect(LAWFUL);
+    let density = |direction: DVec3| {
+        let seen = camera.project(origin + distance * direction);
+        seen.map_or(f64::NAN, |seen| seen.importance * distance * distance)
+    };
+    let of = |pixel| deviation(|u, v| Some(camera.ray(pixel, [u, v]).direction), density);
+    agree(greatest([[0, 0], [2, 1], [3, 2]].map(of)), GRANTED)
 }
 
 /// A map of pixels that all differ.
