@@ -34,6 +34,12 @@ function share(k, n,    low, high) {
     return sprintf("%.1f %% [%.1f, %.1f]", 100 * k / n, 100 * low, 100 * high)
 }
 
+# A share only of a whole: those that were not run are not a random part of it, since the ones that survive take longest.
+function share_of_all(k, n, run, all) {
+    if (run < all) return sprintf("not complete: %d of %d", k, n)
+    return share(k, n)
+}
+
 BEGIN {
     count = split(sizes, rows, "\n")
     for (i = 1; i <= count; i++) { split(rows[i], row, " "); crates[i] = row[1]; size[row[1]] = row[2] }
@@ -89,9 +95,9 @@ END {
     print "|---|---|---|---|---|---|---|---|"
     for (i = 1; i <= count; i++) {
         c = crates[i]
-        printf "| %s | %d | %d | %d | %d | %d | %s | %d of %d |\n", c, faults[c], fault_run[c], fault_stage[c "own"], fault_stage[c "laws"], fault_stage[c "tests"], share(fault_caught[c] + 0, fault_run[c] + 0), verify_caught[c], verify_run[c]
+        printf "| %s | %d | %d | %d | %d | %d | %s | %d of %d |\n", c, faults[c], fault_run[c], fault_stage[c "own"], fault_stage[c "laws"], fault_stage[c "tests"], share_of_all(fault_caught[c] + 0, faults[c] + 0, fault_run[c] + 0, faults[c] + 0), verify_caught[c], verify_run[c]
     }
-    printf "| **all** | %d | %d | | | | %s | %d of %d |\n", all_faults, faults_run, share(faults_caught + 0, faults_run + 0), verify_ok, verify_all
+    printf "| **all** | %d | %d | | | | %s | %d of %d |\n", all_faults, faults_run, share_of_all(faults_caught + 0, all_faults + 0, faults_run + 0, all_faults + 0), verify_ok, verify_all
     print ""
     if (open_faults != "") print "Not noticed:\n\n" open_faults
     print "## A sample of cargo-mutants' mutants"
@@ -105,10 +111,10 @@ END {
     print "|---|---|---|---|---|---|---|---|---|---|---|"
     for (i = 1; i <= count; i++) {
         c = crates[i]
-        printf "| %s | %d | %d | %d | %d | %d | %d | %d | %d | %d | %s |\n", c, size[c], run[c], unbuildable[c], equivalent[c], stage[c "own"], stage[c "laws"], stage[c "tests"], endless[c], viable[c] - caught[c], share(caught[c] + 0, viable[c] + 0)
+        printf "| %s | %d | %d | %d | %d | %d | %d | %d | %d | %d | %s |\n", c, size[c], run[c], unbuildable[c], equivalent[c], stage[c "own"], stage[c "laws"], stage[c "tests"], endless[c], viable[c] - caught[c], share_of_all(caught[c] + 0, size[c] - unbuildable[c] - equivalent[c], run[c] + 0, size[c])
         drawn += size[c]
     }
-    printf "| **all** | %d | %d | %d | %d | | | | | %d | %s |\n", drawn, all_run, all_unbuildable, all_equivalent, all_viable - all_caught, share(all_caught + 0, all_viable + 0)
+    printf "| **all** | %d | %d | %d | %d | | | | | %d | %s |\n", drawn, all_run, all_unbuildable, all_equivalent, all_viable - all_caught, share_of_all(all_caught + 0, drawn - all_unbuildable - all_equivalent, all_run + 0, drawn)
     print ""
     if (all_run < drawn) printf "%d of the sample have not been run yet: `scripts/mutants sample` goes on.\n\n", drawn - all_run
     if (missed != "") print "Missed:\n\n" missed

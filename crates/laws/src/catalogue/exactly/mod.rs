@@ -39,10 +39,14 @@ mod tests {
 
     #[test]
     fn all_hold_whatever_the_seed_and_each_sees_more_than_rounding() {
+        let mut broken = Vec::new();
         for check in without_chance() {
             let result = check.run(Effort::Quick, 1, 1e-9);
-            assert_eq!(result.holds, Some(true), "{}: {}", check.id, result.reason);
-            assert_eq!((result.samples, check.samples(Effort::Full)), (0, 0));
+            assert_eq!((result.samples, check.samples(Effort::Full)), (0, 0), "{}", check.id);
+            if result.holds != Some(true) {
+                broken.push(format!("{}: {}", check.id, result.reason));
+            }
         }
+        assert!(broken.is_empty(), "{broken:#?}");
     }
 }
