@@ -21,7 +21,8 @@ pub(crate) enum Command {
     Report(ReportArguments),
     /// Measure one experiment, or a sweep of them, given as JSON; the result goes to standard output
     Estimate(EstimateArguments),
-    /// Say which estimator of transmittance to use in a medium; a table on standard error, JSON on standard output
+    /// Say which estimator of transmittance along rays to use in a medium; a table on standard error, JSON on
+    /// standard output
     Advise(AdviseArguments),
     /// Render a scene, given as JSON, into images and statistics
     Render(RenderArguments),
@@ -43,7 +44,7 @@ pub(crate) struct ReportArguments {
     /// An OpenVDB fog volume to be reported on as well
     #[arg(long, value_name = "FILE")]
     pub vdb: Option<PathBuf>,
-    /// The grid of that file [default: its first float grid]
+    /// The grid of that file [default: density, or else its only float grid]
     #[arg(long, value_name = "NAME", requires = "vdb")]
     pub grid: Option<String>,
     /// A factor in front of its values
@@ -55,6 +56,9 @@ pub(crate) struct ReportArguments {
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Refuse a volume in which more look-ups are to be expected
+    #[arg(long, value_name = "NUMBER", requires = "vdb", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -71,6 +75,7 @@ impl Default for ReportArguments {
             scale: 1.0,
             out: None,
             seed: 1,
+            budget: 1e11,
             threads: None,
         }
     }
@@ -88,6 +93,9 @@ pub(crate) struct EstimateArguments {
     /// Instead of the spec's seed
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -96,13 +104,14 @@ pub(crate) struct EstimateArguments {
 /// Arguments of `advise`.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct AdviseArguments {
-    /// A medium as in an experiment, or a scene, whose camera's rays are then used; - reads standard input
+    /// A medium as in an experiment; or a scene without scattering, whose camera's rays are then used; - reads
+    /// standard input
     #[arg(value_name = "MEDIUM.json", required_unless_present = "vdb", conflicts_with = "vdb")]
     pub medium: Option<PathBuf>,
     /// Instead, an OpenVDB fog volume
     #[arg(long, value_name = "FILE")]
     pub vdb: Option<PathBuf>,
-    /// The grid of that file [default: its first float grid]
+    /// The grid of that file [default: density, or else its only float grid]
     #[arg(long, value_name = "NAME", requires = "vdb")]
     pub grid: Option<String>,
     /// A factor in front of its values
@@ -117,6 +126,9 @@ pub(crate) struct AdviseArguments {
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -143,6 +155,9 @@ pub(crate) struct RenderArguments {
     /// Instead of the scene's seed
     #[arg(long)]
     pub seed: Option<u64>,
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
     /// Threads [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -161,9 +176,12 @@ pub(crate) struct VerifyArguments {
     /// Only the checks of this estimator
     #[arg(long, value_name = "NAME")]
     pub estimator: Option<String>,
-    /// Fewer samples: under ten seconds, with less power
+    /// Fewer samples, with less power
     #[arg(long)]
     pub quick: bool,
+    /// Every check with its p-values as JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,

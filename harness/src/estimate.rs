@@ -1,11 +1,12 @@
 //! `harness estimate`: JSON in, JSON out.
 
+use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::cli::EstimateArguments;
-use crate::experiment::run_experiment;
-use crate::plan::{MediumLibrary, Plan};
+use crate::experiment::Prepared;
+use crate::plan::MediumLibrary;
 use crate::result::ExperimentResult;
-use crate::spec::{Experiment, Overrides, Request};
-use crate::{DONE, Environment, Failure, UNSOUND};
+use crate::spec::{Overrides, Request};
+use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
 use serde::Serialize;
 use serde_json::Value;
 use std::io::{Read, Write};
@@ -35,13 +36,26 @@ pub(crate) fn run(
     environment: &Environment,
     stdin: &mut dyn Read,
     stdout: &mut dyn Write,
+    stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
     let name = named(&arguments.spec);
     let text = read(&arguments.spec, stdin).map_err(|failure| failure.within(&name))?;
     let overrides = Overrides { samples: arguments.samples, seed: arguments.seed };
     let request = Request::parse(&text, overrides).map_err(|failure| failure.within(&name))?;
+    let budget = Budget::of(arguments.budget);
+    let (prepared, warnings) = environment
+        .on_threads(arguments.threads, || {
+            let prepared = prepare(&request, budget)?;
+            let warnings = warnings(&prepared);
+            Ok((prepared, warnings))
+        })
+        .map_err(|failure| failure.within(&name))?;
+    for warning in warnings {
+        // Nobody is left to tell if standard error is closed.
+        let _ = writeln!(stderr, "warning: {warning}");
+    }
     let (json, unsound) = environment
-        .on_threads(arguments.threads, || answer(&request, environment))
+        .on_threads(arguments.threads, || answer(&request, &prepared, environment))
         .map_err(|failure| failure.within(&name))?;
     writeln!(stdout, "{json}")
         .map_err(|error| Failure::NotWritten(format!("cannot write the result: {error}")))?;
@@ -62,18 +76,55 @@ pub(crate) fn read(path: &Path, stdin: &mut dyn Read) -> Result<String, Failure>
     std::fs::read_to_string(path).map_err(Failure::refused)
 }
 
-fn answer(request: &Request, environment: &Environment) -> Result<(String, bool), Failure> {
+/// All experiments of a request, none of which is drawn before all are known to be lawful and together within
+/// the budget.
+fn prepare(request: &Request, budget: Budget) -> Result<Vec<Prepared>, Failure> {
     let library = MediumLibrary::default();
     match request {
-        Request::Single(experiment) => {
-            let outcome = one(experiment, &library, environment)?;
+        Request::Single(experiment) => Ok(vec![Prepared::of(experiment, &library, budget)?]),
+        Request::Sweep(sweep) => {
+            let mut prepared = Vec::with_capacity(sweep.points.len());
+            for (value, experiment) in &sweep.points {
+                interrupt::check()?;
+                let point = Prepared::of(experiment, &library, budget);
+                prepared.push(point.map_err(|failure| failure.within(format!("sweep value {value}")))?);
+            }
+            let points = format!("the sum over {} points", prepared.len());
+            budget.check("sweep.values", lookups(&prepared), &points)?;
+            Ok(prepared)
+        }
+    }
+}
+
+fn lookups(prepared: &[Prepared]) -> f64 {
+    prepared.iter().map(|prepared| prepared.lookups).sum()
+}
+
+/// Where all this takes more than an hour, and where a declared majorant says that a reference may have missed something; each once.
+fn warnings(prepared: &[Prepared]) -> Vec<String> {
+    let dearest = prepared.iter().max_by(|a, b| a.lookups.total_cmp(&b.lookups));
+    let patience =
+        dearest.and_then(|dearest| patience(lookups(prepared), seconds_per_lookup(&dearest.plan().profile)));
+    let mut doubts: Vec<String> = prepared.iter().filter_map(|prepared| prepared.truth().warning()).collect();
+    doubts.dedup();
+    patience.into_iter().chain(doubts).collect()
+}
+
+fn answer(
+    request: &Request,
+    prepared: &[Prepared],
+    environment: &Environment,
+) -> Result<(String, bool), Failure> {
+    match request {
+        Request::Single(_) => {
+            let outcome = one(&prepared[0], environment)?;
             Ok((to_json(&outcome.result)?, outcome.unsound))
         }
         Request::Sweep(sweep) => {
             let mut points = Vec::with_capacity(sweep.points.len());
             let mut unsound = false;
-            for (value, experiment) in &sweep.points {
-                let outcome = one(experiment, &library, environment)
+            for ((value, _), prepared) in sweep.points.iter().zip(prepared) {
+                let outcome = one(prepared, environment)
                     .map_err(|failure| failure.within(format!("sweep value {value}")))?;
                 unsound |= outcome.unsound;
                 points.push(SweepPoint { value: value.clone(), result: outcome.result });
@@ -83,17 +134,13 @@ fn answer(request: &Request, environment: &Environment) -> Result<(String, bool)
     }
 }
 
-fn one(
-    experiment: &Experiment,
-    library: &MediumLibrary,
-    environment: &Environment,
-) -> Result<Outcome, Failure> {
-    let plan = Plan::of(experiment, library)?;
-    let bar = environment.progress(experiment.samples, "estimating");
-    let result = run_experiment(&plan, environment.provenance(experiment.seed), &|samples| bar.inc(samples))?;
+fn one(prepared: &Prepared, environment: &Environment) -> Result<Outcome, Failure> {
+    let plan = prepared.plan();
+    let bar = environment.progress(plan.samples, "estimating");
+    let result = prepared.run(environment.provenance(plan.seed), &|samples| bar.inc(samples))?;
     bar.finish_and_clear();
     // A biased baseline is what it says it is.
-    let unsound = result.verdict.sound == Some(false) && !experiment.estimator.is_biased_baseline();
+    let unsound = result.verdict.sound == Some(false) && !plan.spec.is_biased_baseline();
     Ok(Outcome { result, unsound })
 }
 

@@ -1,31 +1,94 @@
 //! One experiment from its plan to its result: predict, measure, analyse.
 
 use crate::Failure;
+use crate::budget::Budget;
 use crate::measure::{Draws, Measurement, measure};
 use crate::plan::{
-    AnyEstimator, AnyProfile, Estimator, EstimatorJob, Field, FieldJob, KnownField, Lawful, Plan,
-    ThicknessMethod,
+    AnyEstimator, AnyProfile, Estimator, EstimatorJob, Expected, Field, FieldJob, KnownField, Lawful,
+    MediumLibrary, Plan, ThicknessMethod, Work,
 };
 use crate::reference::{Prediction, Truth, explain, predict};
 use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, ReferenceResult};
+use crate::spec::Experiment;
 use fairflight_laws::Unit;
 use fairflight_media::{Tolerance, Violation};
 use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, Reference, Verdict, judge};
 use fairflight_transmittance::Theory;
 
-/// Runs a plan.
-///
-/// # Errors
-/// If the experiment is refused, before or while it runs.
-pub fn run_experiment(
-    plan: &Plan,
-    provenance: Provenance,
-    advance: &(dyn Fn(u64) + Sync),
-) -> Result<ExperimentResult, Failure> {
-    let truth = Truth::of(&plan.profile, Tolerance::TIGHT)?;
-    let prediction = predict(&plan.profile, &plan.estimator, &truth, Tolerance::TIGHT)?;
-    let measurement = measure_plan(plan, &truth, advance)?;
-    Ok(analyse(plan, &truth, &prediction, &measurement, provenance))
+/// An experiment of which all is known that can be known before a sample is drawn.
+#[derive(Debug)]
+pub struct Prepared {
+    plan: Plan,
+    truth: Truth,
+    prediction: Prediction,
+    /// Look-ups that it is expected to make; infinite where nobody can tell.
+    pub lookups: f64,
+}
+
+impl Prepared {
+    /// Prepares an experiment, unless it is expected to make more look-ups than the `budget` allows.
+    ///
+    /// # Errors
+    /// If a file cannot be read, the parts do not fit, or they would take too long.
+    pub fn of(experiment: &Experiment, library: &MediumLibrary, budget: Budget) -> Result<Self, Failure> {
+        let profile = AnyProfile::build(&experiment.profile, library)?;
+        let work = Work::on(&profile, &experiment.estimator);
+        let samples = experiment.samples;
+        let check = |each: f64| {
+            let (total, length) = (work.total(samples, each), profile.length());
+            let by_rate = each > 1.0 || work.preparation > samples as f64;
+            let because = if by_rate {
+                let preparation = match work.preparation {
+                    0.0 => String::new(),
+                    lookups => format!(" and {lookups:.3e} before the first"),
+                };
+                format!(
+                    "samples: {samples} of {each:.3e} each{preparation}, over profile.length = {length:e}"
+                )
+            } else {
+                format!("samples: {samples}, each of one at least")
+            };
+            let key = if by_rate { work.key } else { "samples" };
+            budget.check(key, total, &because).map(|()| total)
+        };
+        // What is known before anything is built costs nothing; else the closed form tells, where there is one.
+        check(work.estimate.least())?;
+        let plan = Plan::on(profile.clone(), experiment.estimator.clone(), samples, experiment.seed)?;
+        let truth = Truth::of(&plan.profile, Tolerance::TIGHT)?;
+        let prediction = predict(&plan.profile, &plan.estimator, &truth, Tolerance::TIGHT)?;
+        let known = Some(prediction.theory.lookups).filter(|lookups| !lookups.is_nan());
+        let lookups = check(match (work.estimate, known) {
+            (Expected::Between(..), Some(known)) => known,
+            (estimate, _) => estimate.most(),
+        })?;
+        Ok(Self { plan, truth, prediction, lookups })
+    }
+
+    /// The plan.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What is known of the profile.
+    #[must_use]
+    pub fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
+    /// Draws the samples, and puts what was measured beside what is known.
+    ///
+    /// # Errors
+    /// If the experiment is refused while it runs.
+    pub fn run(
+        &self,
+        provenance: Provenance,
+        advance: &(dyn Fn(u64) + Sync),
+    ) -> Result<ExperimentResult, Failure> {
+        let Self { plan, truth, prediction, .. } = self;
+        let measurement = measure_plan(plan, truth, advance)?;
+        Ok(analyse(plan, truth, prediction, &measurement, provenance))
+    }
 }
 
 /// Draws the samples of a plan.
@@ -109,6 +172,7 @@ pub fn compare(
     let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
     let reference = Reference {
         error: truth.error() * unit.scale(),
+        certainty: truth.certainty(unit),
         moments: Some(closed),
         variance_bound: variance_bound(&prediction.theory).filter(|_| closed.mean == 1.0),
         scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
@@ -207,10 +271,15 @@ fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
 
 /// How the reference is known, in words.
 fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> String {
-    let thickness = match truth.method {
-        ThicknessMethod::ClosedForm => "closed form",
-        ThicknessMethod::GaussPerCell => "two-point Gauss-Legendre per voxel cell (exact)",
-        ThicknessMethod::Quadrature => "adaptive Gauss-Kronrod quadrature",
+    let thickness = match (truth.method, &truth.doubt) {
+        (_, Some((doubt, _))) => &format!("adaptive Gauss-Kronrod quadrature (not certified: {doubt})"),
+        (ThicknessMethod::ClosedForm, None) => "closed form (certified)",
+        (ThicknessMethod::GaussPerCell, None) => {
+            "two-point Gauss-Legendre per voxel cell (exact, thus certified)"
+        }
+        (ThicknessMethod::Quadrature, None) => {
+            "quadrature with a bound of its error on every panel (certified)"
+        }
     };
     let variance = match &plan.estimator {
         AnyEstimator::Woodcock { .. } => "variance: closed form T(1 - T)",

@@ -12,6 +12,9 @@ pub const REFUSED: i32 = 2;
 /// Exit code 3: the output could not be written.
 pub const NOT_WRITTEN: i32 = 3;
 
+/// Exit code 130: ended by a signal, as a shell says it of SIGINT.
+pub const INTERRUPTED: i32 = 130;
+
 /// An end without a result: one line for a person, and an exit code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
@@ -19,6 +22,8 @@ pub enum Failure {
     Refused(String),
     /// The output could not be written.
     NotWritten(String),
+    /// A signal asked to stop.
+    Interrupted,
 }
 
 impl Failure {
@@ -38,6 +43,7 @@ impl Failure {
         match self {
             Self::Refused(reason) => Self::refused(format!("{place}: {reason}")),
             Self::NotWritten(reason) => Self::NotWritten(format!("{place}: {reason}")),
+            Self::Interrupted => Self::Interrupted,
         }
     }
 
@@ -47,6 +53,7 @@ impl Failure {
         match self {
             Self::Refused(_) => REFUSED,
             Self::NotWritten(_) => NOT_WRITTEN,
+            Self::Interrupted => INTERRUPTED,
         }
     }
 }
@@ -56,11 +63,32 @@ impl fmt::Display for Failure {
         match self {
             Self::Refused(reason) => write!(f, "refused: {reason}"),
             Self::NotWritten(reason) => write!(f, "{reason}"),
+            Self::Interrupted => f.write_str("interrupted"),
         }
     }
 }
 
-/// Messages of libraries may span lines; a person gets one.
+/// Messages of libraries may span lines; a person gets one. What a file wrote may hold controls that a terminal obeys; a person sees them.
 fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    if !line.contains(char::is_control) {
+        return line;
+    }
+    let shown = |c: char| if c.is_control() { c.escape_unicode().to_string() } else { c.to_string() };
+    line.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_is_one_line_without_controls() {
+        // DEL, and the single character that introduces a control sequence; found by fuzzing.
+        let failure = Failure::refused("estimator.kind: found \"jittered\u{7f}ratio\",\n  \u{9b}31m");
+        assert_eq!(
+            failure.to_string(),
+            "refused: estimator.kind: found \"jittered\\u{7f}ratio\", \\u{9b}31m"
+        );
+    }
 }

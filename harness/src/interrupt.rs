@@ -1,130 +1,198 @@
-//! What is half written when a person gives up is removed: no file or folder stays behind that nobody asked for.
+//! Interrupts: whoever works asks whether to go on.
 //!
-//! Whoever creates something temporary registers it with [`remove_on_interrupt`] and keeps the [`Guard`] until it is complete or gone.
-//! The handler, which only the program installs, removes what is registered at that moment and ends the process. A program that embeds
-//! the library keeps its own handlers; the registry is then a list that nobody reads.
+//! The first signal is a request. Batches, passes and checks ask for it with [`check`] and return, so that
+//! temporary files are removed as on any other way out. Work that can end early with a result says so with
+//! [`stop_gently`], and asks when it has something whole. What has not come to an end [`GRACE`] after the
+//! request, or at a second signal, is ended where it is: then, and only then, the files and folders that are
+//! registered under a [`shield`] are removed from here.
 //!
-//! Work that can stop early with a result says so with [`stop_gently`]: the first interrupt then only asks it to, the second ends the
-//! process.
+//! Only the program [installs](install) this; a program that embeds the library keeps its own handlers, and no
+//! request is ever made.
 
+use crate::{Failure, INTERRUPTED};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
 
-/// Exit code 130: ended by a signal, as a shell says it of SIGINT.
-pub const INTERRUPTED: i32 = 130;
+/// The time that work has to notice a request, unless it stops gently.
+pub const GRACE: Duration = Duration::from_secs(2);
 
 /// How often a removal is tried while another thread may still be creating files in the same folder.
 const ATTEMPTS: usize = 100;
 
-static REGISTRY: Mutex<Registry> = Mutex::new(Registry { next: 0, entries: Vec::new(), gentle: Vec::new() });
+/// Signals so far.
+static REQUESTS: AtomicUsize = AtomicUsize::new(0);
+/// Pieces of work that stop gently.
+static GENTLE: AtomicUsize = AtomicUsize::new(0);
+/// Whether the end has begun.
+static ENDING: AtomicBool = AtomicBool::new(false);
+static TEMPORARY: Mutex<Vec<Temporary>> = Mutex::new(Vec::new());
 
-/// Ends the process on SIGINT, SIGTERM and SIGHUP (on Windows: Ctrl-C, Ctrl-Break, close) after a removal of what is registered,
-/// unless something is running that can [`stop gently`](stop_gently) and was not asked yet.
+/// Serves SIGHUP, SIGINT, SIGQUIT and SIGTERM, each by itself. One that was ignored when the program started
+/// stays ignored, as `nohup` and background jobs of a shell want it; that is known on Linux only, elsewhere all
+/// are served.
+///
+/// # Errors
+/// If the system refuses some: the others are served.
+#[cfg(unix)]
+pub fn install() -> Result<(), String> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    let failed = |error: io::Error| error.to_string();
+    let mut signals = Signals::new::<[i32; 0], i32>([]).map_err(failed)?;
+    let ignored = fs::read_to_string("/proc/self/status").map_or(0, |status| ignored(&status));
+    let mut refused = Vec::new();
+    for (signal, name) in [(SIGHUP, "SIGHUP"), (SIGINT, "SIGINT"), (SIGQUIT, "SIGQUIT"), (SIGTERM, "SIGTERM")]
+    {
+        if ignored >> (signal - 1) & 1 == 1 {
+            continue;
+        }
+        if let Err(error) = signals.add_signal(signal) {
+            refused.push(format!("{name}: {error}"));
+        }
+    }
+    let serve = move || signals.forever().for_each(|_| request());
+    std::thread::Builder::new().name("signals".to_owned()).spawn(serve).map_err(failed)?;
+    if refused.is_empty() { Ok(()) } else { Err(refused.join(", ")) }
+}
+
+/// Serves Ctrl-C, Ctrl-Break and close.
 ///
 /// # Errors
 /// If the process has such a handler already, or the system refuses one.
+#[cfg(windows)]
 pub fn install() -> Result<(), String> {
-    let handler = || {
-        let mut stderr = io::stderr();
-        // The line of a progress bar has no end yet.
-        let gap = if stderr.is_terminal() { "\n" } else { "" };
-        let shield = shield();
-        if shield.registry.ask_to_stop() {
-            let _ = writeln!(stderr, "{gap}interrupted: stops with what is done, again: stops at once");
-            return;
-        }
-        // It is never released: from here on nothing is created under a shield, and nothing is put in place.
-        shield.registry.clear();
-        let _ = writeln!(stderr, "{gap}interrupted");
-        std::process::exit(INTERRUPTED);
-    };
-    ctrlc::try_set_handler(handler).map_err(|error| error.to_string())
+    ctrlc::try_set_handler(request).map_err(|error| error.to_string())
 }
 
-/// Until it is dropped, the first interrupt only asks to stop.
-#[must_use = "an interrupt ends the process once this is dropped"]
+/// The signals, a bit each from the lowest, that a process ignores: `SigIgn` of its `/proc/PID/status`
+/// (proc_pid_status(5)).
+#[cfg(unix)]
+fn ignored(status: &str) -> u64 {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// What a signal does.
+fn request() {
+    if REQUESTS.fetch_add(1, Ordering::SeqCst) > 0 {
+        end_at_once();
+    }
+    if GENTLE.load(Ordering::SeqCst) > 0 {
+        tell("interrupted: stops with what is done, again: stops at once");
+        return;
+    }
+    let late = || {
+        std::thread::sleep(GRACE);
+        end_at_once();
+    };
+    if std::thread::Builder::new().spawn(late).is_err() {
+        end_at_once();
+    }
+}
+
+/// Whether the process ends by who asks this first: it tells that it was interrupted, nobody else does.
+pub(crate) fn ends_here() -> bool {
+    !ENDING.swap(true, Ordering::SeqCst)
+}
+
+/// Removes what is registered, and ends the process.
+fn end_at_once() -> ! {
+    if !ends_here() {
+        // The program is on its way out.
+        loop {
+            std::thread::park();
+        }
+    }
+    // It is never released: from here on nothing is created under a shield, and nothing is put in place.
+    let shield = shield();
+    clear(&shield.0);
+    tell("interrupted");
+    std::process::exit(INTERRUPTED);
+}
+
+fn tell(what: &str) {
+    let mut stderr = io::stderr();
+    // The line of a progress bar has no end yet. Nobody is left to tell if standard error is closed.
+    let gap = if stderr.is_terminal() { "\n" } else { "" };
+    let _ = writeln!(stderr, "{gap}{what}");
+}
+
+/// Whether to go on.
+///
+/// # Errors
+/// [`Failure::Interrupted`] after a signal, unless something stops gently.
+pub fn check() -> Result<(), Failure> {
+    if REQUESTS.load(Ordering::Relaxed) > 0 && GENTLE.load(Ordering::Relaxed) == 0 {
+        return Err(Failure::Interrupted);
+    }
+    Ok(())
+}
+
+/// Until it is dropped, the first interrupt stops nobody else.
+#[must_use = "an interrupt stops all work once this is dropped"]
 pub fn stop_gently() -> GentleStop {
-    let requested = Arc::new(AtomicBool::new(false));
-    shield().registry.gentle.push(Arc::clone(&requested));
-    GentleStop { requested }
+    GENTLE.fetch_add(1, Ordering::SeqCst);
+    GentleStop(())
 }
 
 /// See [`stop_gently`].
 #[derive(Debug)]
-pub struct GentleStop {
-    requested: Arc<AtomicBool>,
-}
+pub struct GentleStop(());
 
 impl GentleStop {
     /// Whether an interrupt asked to stop.
     #[must_use]
     pub fn is_requested(&self) -> bool {
-        self.requested.load(Ordering::Relaxed)
+        REQUESTS.load(Ordering::Relaxed) > 0
     }
 }
 
 impl Drop for GentleStop {
     fn drop(&mut self) {
-        shield().registry.gentle.retain(|other| !Arc::ptr_eq(other, &self.requested));
+        GENTLE.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
-/// Registers a file, or a folder with all that is in it, for removal. See [`Shield::remove_on_interrupt`].
-#[must_use = "the path is forgotten when the guard is dropped"]
-pub fn remove_on_interrupt(path: impl Into<PathBuf>) -> Guard {
-    shield().remove_on_interrupt(path)
-}
-
-/// Keeps the handler waiting as long as it lives: for steps that belong together, such as the creation of a temporary file and
-/// its registration, or two renames.
-///
-/// It is a lock: a thread must not ask for a second one, nor drop a [`Guard`], while it holds one; [`Shield::forget`] takes guards.
+/// Keeps the end of the process waiting as long as it lives: for steps that belong together, such as the
+/// creation of a temporary file and its registration, or two renames. A thread must not ask for a second one
+/// while it holds one.
 #[must_use]
 pub fn shield() -> Shield {
-    Shield { registry: REGISTRY.lock().unwrap_or_else(PoisonError::into_inner) }
+    Shield(TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// See [`shield`].
-pub struct Shield {
-    registry: MutexGuard<'static, Registry>,
-}
+pub struct Shield(MutexGuard<'static, Vec<Temporary>>);
 
 impl Shield {
     /// Registers a file, or a folder with all that is in it, until the guard is dropped. Relative paths are those of this moment.
     #[must_use = "the path is forgotten when the guard is dropped"]
     pub fn remove_on_interrupt(&mut self, path: impl Into<PathBuf>) -> Guard {
-        self.registry.add(path.into(), What::Whole)
+        register(&mut self.0, path.into(), What::Whole)
     }
 
     /// Registers a folder that is removed if it is empty then, after all that is removed whole; of several, the first first.
     #[must_use = "the path is forgotten when the guard is dropped"]
     pub fn remove_on_interrupt_if_empty(&mut self, path: impl Into<PathBuf>) -> Guard {
-        self.registry.add(path.into(), What::IfEmpty)
-    }
-
-    /// Forgets a path: it is complete, or gone.
-    pub fn forget(&mut self, mut guard: Guard) {
-        if let Some(key) = guard.key.take() {
-            self.registry.forget(key);
-        }
+        register(&mut self.0, path.into(), What::IfEmpty)
     }
 }
 
-/// A path that is removed if the process is interrupted while this lives.
+/// A path that is removed if the process is ended while this lives.
 #[derive(Debug)]
+#[must_use = "the path is forgotten when the guard is dropped"]
 pub struct Guard {
-    key: Option<u64>,
+    /// Alive as long as this, which is what the registry sees.
+    _path: Arc<PathBuf>,
 }
 
-impl Drop for Guard {
-    fn drop(&mut self) {
-        if let Some(key) = self.key {
-            shield().registry.forget(key);
-        }
-    }
+struct Temporary {
+    path: Weak<PathBuf>,
+    what: What,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -133,38 +201,19 @@ enum What {
     IfEmpty,
 }
 
-struct Registry {
-    next: u64,
-    entries: Vec<(u64, PathBuf, What)>,
-    gentle: Vec<Arc<AtomicBool>>,
+fn register(temporary: &mut Vec<Temporary>, path: PathBuf, what: What) -> Guard {
+    temporary.retain(|old| old.path.strong_count() > 0);
+    let path = Arc::new(std::path::absolute(&path).unwrap_or(path));
+    temporary.push(Temporary { path: Arc::downgrade(&path), what });
+    Guard { _path: path }
 }
 
-impl Registry {
-    fn add(&mut self, path: PathBuf, what: What) -> Guard {
-        let key = self.next;
-        self.next += 1;
-        let path = std::path::absolute(&path).unwrap_or(path);
-        self.entries.push((key, path, what));
-        Guard { key: Some(key) }
-    }
-
-    fn forget(&mut self, key: u64) {
-        self.entries.retain(|entry| entry.0 != key);
-    }
-
-    /// Asks all work that can stop gently to do so; whether some was not asked before.
-    fn ask_to_stop(&self) -> bool {
-        // Not `any`, which would stop at the first one.
-        self.gentle.iter().filter(|requested| !requested.swap(true, Ordering::Relaxed)).count() > 0
-    }
-
-    /// Removes what is registered. Nobody is left to be told what could not be removed.
-    fn clear(&self) {
-        let of = |what| self.entries.iter().filter(move |entry| entry.2 == what).map(|entry| &entry.1);
-        of(What::Whole).for_each(|path| remove(path));
-        for path in of(What::IfEmpty) {
-            let _ = fs::remove_dir(path);
-        }
+/// Removes what is registered. Nobody is left to be told what could not be removed.
+fn clear(temporary: &[Temporary]) {
+    let of = |what| temporary.iter().filter(move |it| it.what == what).filter_map(|it| it.path.upgrade());
+    of(What::Whole).for_each(|path| remove(&path));
+    for path in of(What::IfEmpty) {
+        let _ = fs::remove_dir(&*path);
     }
 }
 
@@ -183,16 +232,6 @@ fn remove(path: &Path) {
 mod tests {
     use super::*;
 
-    /// A registry of its own: the guards of others in this process are not touched.
-    fn registry() -> Registry {
-        Registry { next: 0, entries: Vec::new(), gentle: Vec::new() }
-    }
-
-    /// The guard of a registry of its own must not speak to the global one.
-    fn key(mut guard: Guard) -> u64 {
-        guard.key.take().unwrap()
-    }
-
     #[test]
     fn what_is_registered_goes_and_the_rest_stays() {
         let root = tempfile::tempdir().unwrap();
@@ -203,21 +242,25 @@ mod tests {
         for file in ["folder/below/file", "file", "done", "kept/file", "outer/inner/file"] {
             fs::write(at(file), "x").unwrap();
         }
-        let mut registry = registry();
+        // A list of its own: the files of others in this process are not touched.
+        let mut temporary = Vec::new();
         // Folders that must be empty come after those that are removed whole, whatever the order of their registration.
+        let mut guards = Vec::new();
         for name in ["outer/inner", "outer", "kept"] {
-            key(registry.add(at(name), What::IfEmpty));
+            guards.push(register(&mut temporary, at(name), What::IfEmpty));
         }
         for name in ["folder", "file", "outer/inner/file", "never/was"] {
-            key(registry.add(at(name), What::Whole));
+            guards.push(register(&mut temporary, at(name), What::Whole));
         }
-        let done = key(registry.add(at("done"), What::Whole));
-        registry.forget(done);
-        registry.clear();
+        drop(register(&mut temporary, at("done"), What::Whole));
+        clear(&temporary);
         let mut left: Vec<_> =
             fs::read_dir(root.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         left.sort();
         assert_eq!(left, ["done", "kept"]);
+        drop(guards);
+        let _last = register(&mut temporary, at("file"), What::Whole);
+        assert_eq!(temporary.len(), 1, "what is gone is forgotten");
     }
 
     #[cfg(unix)]
@@ -231,27 +274,12 @@ mod tests {
         assert!(target.is_dir() && fs::symlink_metadata(&link).is_err());
     }
 
+    #[cfg(unix)]
     #[test]
-    fn work_that_can_stop_is_asked_once() {
-        let mut registry = registry();
-        assert!(!registry.ask_to_stop(), "nobody is there to be asked");
-        registry.gentle = vec![Arc::default(), Arc::default()];
-        assert!(registry.ask_to_stop());
-        assert!(registry.gentle.iter().all(|requested| requested.load(Ordering::Relaxed)));
-        assert!(!registry.ask_to_stop());
-    }
-
-    #[test]
-    fn a_dropped_guard_is_forgotten() {
-        let root = tempfile::tempdir().unwrap();
-        let path = root.path().join("file");
-        let registered = || shield().registry.entries.iter().any(|entry| entry.1 == path);
-        let guard = remove_on_interrupt(&path);
-        assert!(registered());
-        drop(guard);
-        assert!(!registered());
-        let guard = remove_on_interrupt(&path);
-        shield().forget(guard);
-        assert!(!registered());
+    fn what_is_ignored_is_read_from_the_status() {
+        let status = "Name:\tharness\nSigBlk:\t0000000000000002\nSigIgn:\t0000000000001007\nSigCgt:\t0000000000000000\n";
+        let ignores = |signal: u32| ignored(status) >> (signal - 1) & 1 == 1;
+        assert_eq!([1, 2, 3, 13, 15].map(ignores), [true, true, true, true, false]);
+        assert_eq!(ignored("Name:\tharness\n"), 0);
     }
 }

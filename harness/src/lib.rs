@@ -15,6 +15,7 @@ mod list;
 mod render;
 mod verify;
 
+pub mod budget;
 pub mod comparison;
 pub mod experiment;
 pub mod image;
@@ -27,7 +28,7 @@ pub mod result;
 pub mod spec;
 
 pub use environment::{Environment, Terminal};
-pub use failure::{DONE, Failure, NOT_WRITTEN, REFUSED, UNSOUND};
+pub use failure::{DONE, Failure, INTERRUPTED, NOT_WRITTEN, REFUSED, UNSOUND};
 
 use clap::Parser;
 use cli::{Cli, Command, ReportArguments};
@@ -51,7 +52,7 @@ pub fn run(
     };
     let environment = Environment::new(&arguments, terminal);
     let outcome = match cli.command {
-        Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout),
+        Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
@@ -62,8 +63,13 @@ pub fn run(
     match outcome {
         Ok(code) => code,
         Err(failure) => {
-            // Nobody is left to tell if standard error is closed.
-            let _ = writeln!(stderr, "{failure}");
+            let interrupted = failure == Failure::Interrupted;
+            // The line of a progress bar that was given up has no end yet. Nobody is left to tell if standard
+            // error is closed.
+            let gap = if interrupted && terminal.progress { "\n" } else { "" };
+            if !interrupted || interrupt::ends_here() {
+                let _ = writeln!(stderr, "{gap}{failure}");
+            }
             failure.code()
         }
     }

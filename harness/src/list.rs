@@ -14,7 +14,7 @@ media          homogeneous       sigma_t, bounds
                analytic_cosine   [scale], [bounds]          szirmay-kalos-2017 eq. 21
                perlin            [octaves], [frequency], [lacunarity], [gain], [seed], [scale], [offset], bounds
                expression        sigma_t (in x, y, z), [majorant], bounds
-               vdb               file, [grid], [scale], [bounds]
+               vdb               file, [grid], [scale], [allow_negative], [bounds]
 bounds         sphere            center, radius
                box               min, max
 estimators     woodcock          majorant                   raab-2008 algorithm 1

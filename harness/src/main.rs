@@ -1,11 +1,13 @@
 //! The program: everything is in the library, so that tests drive it as a user would.
 
 use fairflight_harness::Terminal;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 
 fn main() -> std::process::ExitCode {
-    // Without the handler the program does its work all the same; only an interrupt would leave a temporary folder behind.
-    let _ = fairflight_harness::interrupt::install();
+    if let Err(error) = fairflight_harness::interrupt::install() {
+        // The program does its work all the same.
+        let _ = writeln!(io::stderr(), "warning: an interrupt may leave temporary files behind: {error}");
+    }
     let code = fairflight_harness::run(
         std::env::args_os(),
         &mut io::stdin().lock(),

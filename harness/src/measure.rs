@@ -1,7 +1,7 @@
 //! Drawing estimates in parallel, the same ones whatever the number of threads.
 
-use crate::Failure;
 use crate::plan::{Estimator, Field, Lawful};
+use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_laws::{BATCH, batch_count, batch_moments, batch_size, draw_batch};
 use fairflight_media::{Counted, Violation, Watched};
@@ -54,8 +54,8 @@ pub struct Draws {
 /// Draws estimates. `advance` is told how many samples were added.
 ///
 /// # Errors
-/// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), or an estimate is not
-/// finite.
+/// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), an estimate is
+/// not finite, or an interrupt asked to stop.
 pub fn measure<G: Field, E: Estimator<G>>(
     lawful: Lawful<G, E>,
     draws: Draws,
@@ -82,6 +82,7 @@ fn in_batches(
         let indices = start..batches.min(start + CHUNK);
         let buffer = || Vec::with_capacity(BATCH as usize);
         let one = |values: &mut Vec<f64>, index| {
+            interrupt::check()?;
             let batch = draw(index, values)?;
             advance(batch_size(samples, index));
             Ok(batch)

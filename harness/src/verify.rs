@@ -1,64 +1,62 @@
 //! `harness verify`: every law over every estimator, medium and hard case.
 
 use crate::cli::VerifyArguments;
-use crate::{DONE, Environment, Failure, UNSOUND};
-use fairflight_laws::{Check, CheckResult, Effort, Kind, catalogue};
-use fairflight_stats::sidak_level;
+use crate::result::{Provenance, number};
+use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
+use fairflight_laws::{Check, CheckResult, Effort, FAMILY_LEVEL, FAMILY_SIZE, Kind, catalogue, check_level};
 use rayon::prelude::*;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
-
-/// False alarm of a whole run: one in a million, whatever the number of checks.
-const FAMILY_LEVEL: f64 = 1e-6;
 
 pub(crate) fn run(
     arguments: &VerifyArguments,
     environment: &Environment,
     stdout: &mut dyn Write,
 ) -> Result<i32, Failure> {
-    let all = catalogue();
-    // The level is that of the whole catalogue also where a part of it is run: a check keeps its verdict.
-    let alpha = sidak_level(FAMILY_LEVEL, all.len());
-    let checks = select(all, arguments.estimator.as_deref())?;
+    let checks = select(catalogue(), arguments.estimator.as_deref())?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     let bar = environment.progress(checks.len() as u64, "verifying");
     let results: Vec<CheckResult> = environment.on_threads(arguments.threads, || {
-        Ok(checks
+        checks
             .par_iter()
             // One check a task: some take a thousand times as long as others.
             .with_max_len(1)
             .map(|check| {
-                let result = check.run(effort, arguments.seed, alpha);
+                interrupt::check()?;
+                let result = check.run(effort, arguments.seed, check_level());
                 bar.inc(1);
-                result
+                Ok(result)
             })
-            .collect())
+            .collect()
     })?;
     bar.finish_and_clear();
-    let text = table(&checks, &results, alpha, environment, arguments.seed);
+    let provenance = environment.provenance(arguments.seed);
+    let text = if arguments.json {
+        json(&checks, &results, provenance)?
+    } else {
+        table(&checks, &results, &provenance)
+    };
     stdout
         .write_all(text.as_bytes())
         .map_err(|error| Failure::NotWritten(format!("cannot write the result: {error}")))?;
     Ok(if results.iter().any(|result| result.holds == Some(false)) { UNSOUND } else { DONE })
 }
 
-/// The checks that are about this kind of estimator.
+/// The checks that draw from this kind of estimator; a kind without any is refused, as an unknown one is.
 fn select(all: Vec<Check>, estimator: Option<&str>) -> Result<Vec<Check>, Failure> {
     let Some(name) = estimator else { return Ok(all) };
-    let Some(kind) = Kind::ALL.into_iter().find(|kind| kind.name() == name) else {
-        let names = Kind::ALL.map(Kind::name).join(", ");
+    let is_checked = |kind: &Kind| all.iter().any(|check| check.kinds.contains(kind));
+    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(is_checked).collect();
+    let Some(kind) = kinds.iter().copied().find(|kind| kind.name() == name) else {
+        let names: Vec<&str> = kinds.into_iter().map(Kind::name).collect();
+        let names = names.join(", ");
         return Err(Failure::refused(format!("--estimator: must be one of {names}, found {name}")));
     };
     Ok(all.into_iter().filter(|check| check.kinds.contains(&kind)).collect())
 }
 
-fn table(
-    checks: &[Check],
-    results: &[CheckResult],
-    alpha: f64,
-    environment: &Environment,
-    seed: u64,
-) -> String {
+fn table(checks: &[Check], results: &[CheckResult], provenance: &Provenance) -> String {
     let width =
         |column: fn(&Check) -> &str| checks.iter().map(|c| column(c).chars().count()).max().unwrap_or(0);
     let id_width = width(|check| &check.id);
@@ -99,15 +97,73 @@ fn table(
     let _ = writeln!(
         text,
         "\n{} checks: {} hold, {} do not hold, {} not testable at this N\n\
-         false alarm of the whole catalogue below {FAMILY_LEVEL:e} ({alpha:.2e} per check); power: with probability 0.99 \
-         a relative bias of {median:.1e} would have been found (median over the checks), {worst:.1e} in the least powerful\n\
-         seed {seed}, revision {}, {}",
+         false alarm of the whole catalogue below {FAMILY_LEVEL:e} ({:.2e} per check, for up to {FAMILY_SIZE}); power: with \
+         probability 0.99 a relative bias of {median:.1e} would have been found (median over the checks), {worst:.1e} in the \
+         least powerful\n\
+         seed {}, revision {}, {}",
         checks.len(),
         count(Some(true)),
         count(Some(false)),
         count(None),
-        environment.provenance(seed).revision,
-        environment.command(),
+        check_level(),
+        provenance.seed,
+        provenance.revision,
+        provenance.command,
     );
     text
+}
+
+/// One check with what it found.
+#[derive(Serialize)]
+struct Finding<'a> {
+    id: &'a str,
+    law: &'static str,
+    estimator: &'a str,
+    kinds: Vec<&'static str>,
+    medium: &'a str,
+    /// Null: not testable.
+    holds: Option<bool>,
+    samples: u64,
+    mean_z: Option<f64>,
+    variance_z: Option<f64>,
+    lookups_z: Option<f64>,
+    /// Without the factors of safety of the verdict; `level` says how each is to be read.
+    p_values: Vec<serde_json::Value>,
+    detectable_relative_bias: Option<f64>,
+    #[serde(serialize_with = "number")]
+    normal_share: Option<f64>,
+    #[serde(serialize_with = "number")]
+    samples_needed: Option<f64>,
+    reason: &'a str,
+}
+
+fn json(checks: &[Check], results: &[CheckResult], provenance: Provenance) -> Result<String, Failure> {
+    let finding = |(check, result): (&'_ Check, &'_ CheckResult)| {
+        let p_values = result.p_values.iter();
+        serde_json::to_value(Finding {
+            id: &check.id,
+            law: check.law.name(),
+            estimator: &check.estimator,
+            kinds: check.kinds.iter().map(|kind| kind.name()).collect(),
+            medium: &check.medium,
+            holds: result.holds,
+            samples: result.samples,
+            mean_z: result.mean_z,
+            variance_z: result.variance_z,
+            lookups_z: result.lookups_z,
+            p_values: p_values
+                .map(|p| serde_json::json!({ "of": p.of, "p": p.p, "level": p.level.name() }))
+                .collect(),
+            detectable_relative_bias: result.detectable_relative_bias,
+            normal_share: result.normal_share,
+            samples_needed: result.samples_needed,
+            reason: &result.reason,
+        })
+    };
+    let findings: Result<Vec<_>, _> = checks.iter().zip(results).map(finding).collect();
+    let findings = findings.map_err(Failure::refused)?;
+    let family =
+        serde_json::json!({ "level": FAMILY_LEVEL, "checks": FAMILY_SIZE, "check_level": check_level() });
+    let whole = serde_json::json!({ "checks": findings, "family": family, "provenance": provenance });
+    serde_json::to_string_pretty(&whole).map(|text| text + "\n").map_err(Failure::refused)
 }

@@ -2,6 +2,7 @@
 //! gives the moment formula. Deterministic: proptest's own fixed generator.
 
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
+use fairflight_laws::FAMILY_LEVEL;
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::check;
 use fairflight_laws::{Expectation, Run, Truth};
@@ -10,7 +11,6 @@ use fairflight_media::{
 };
 use fairflight_sources::UniformSource;
 use fairflight_stats::{Scores, sidak_level};
-use fairflight_tests::FAMILY_LEVEL;
 use fairflight_transmittance::{ClosedForm, Tracking};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};

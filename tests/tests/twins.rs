@@ -1,8 +1,8 @@
 //! Every wrong twin is rejected, at the z that it states.
 
-use fairflight_laws::{Evident, Law, Run, twins};
-use fairflight_stats::{normal::two_sided_quantile, sidak_level};
-use fairflight_tests::{FAMILY_LEVEL, SEED, run_checks};
+use fairflight_laws::{Evident, Law, Run, check_level, twins};
+use fairflight_stats::normal::two_sided_quantile;
+use fairflight_tests::{SEED, run_checks};
 
 #[test]
 fn every_twin_is_rejected_in_the_catalogue() {
@@ -16,7 +16,7 @@ fn every_twin_is_rejected_in_the_catalogue() {
 
 #[test]
 fn every_twin_shows_the_z_that_it_states() {
-    let alpha = sidak_level(FAMILY_LEVEL, 1000);
+    let alpha = check_level();
     for twin in twins() {
         let rejection = twin.run(Run { samples: twin.samples, seed: SEED, alpha });
         let (measured, stated) = match twin.evident {

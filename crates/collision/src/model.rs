@@ -18,6 +18,11 @@ pub trait CollisionModel {
     /// The transmitted particle.
     fn transmitted(&self, r: f64) -> Branch;
 
+    /// The ratios at which a moment of either particle, as a function of r, is not smooth: where an integral over a ray is to be split.
+    fn kinks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// Draws the weight of the transmitted particle; `None` where no transmitted particle leaves and the walk ends.
     fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64>;
 }

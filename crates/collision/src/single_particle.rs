@@ -94,6 +94,11 @@ impl CollisionModel for SingleParticle {
         Branch { probability: wanted / sum, energy, absence: a * r.abs() / sum, excess }
     }
 
+    /// Of |r| and |1 − r|; and where an adaptive particle turns from terminating to not.
+    fn kinks(&self) -> Vec<f64> {
+        vec![0.0, 1.0, 2.0 / (1.0 + self.albedo.get())]
+    }
+
     #[inline]
     fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
         let transmitted = self.transmitted(r);

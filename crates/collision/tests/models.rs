@@ -85,6 +85,13 @@ fn no_variate_draws_what_has_no_probability() {
             assert_eq!(at(0.0, 1.0), Outcome::Absorbed);
         }
     }
+    // Woodcock's: neither what does not scatter nor where there is no matter.
+    let woodcock =
+        |a: f64, r: f64, u: f64| Woodcock { albedo: albedo(a) }.collide(r, &mut Scripted::new([u]));
+    assert_eq!(woodcock(0.0, 0.5, 0.0), Outcome::Absorbed);
+    assert_eq!(woodcock(0.5, 0.0, 0.0), Outcome::Transmitted(1.0));
+    assert_eq!(woodcock(1.0, 1.0, LARGEST_VARIATE), Outcome::Scattered(1.0));
+    assert_eq!(woodcock(0.0, 1.0, LARGEST_VARIATE), Outcome::Absorbed);
 }
 
 #[test]
@@ -131,24 +138,59 @@ fn variance_introduction_densities_are_those_of_the_paper() {
 #[test]
 fn moments_about_zero_and_about_one_agree() {
     for a in ALBEDOS {
-        for r in [-2.0, -0.5, 0.25, 1.0, 1.3, 7.0] {
-            for branch in [
-                single(Version::NonTerminating, a).transmitted(r),
-                single(Version::Adaptive, a).transmitted(r),
-                DoubleParticle { albedo: albedo(a) }.transmitted(r),
-            ] {
-                let raw = |k: i32| branch.moment(k);
-                // (W − 1)^4 expanded
-                let fourth = raw(4) - 4.0 * raw(3) + 6.0 * raw(2) - 4.0 * raw(1) + 1.0;
-                assert_relative_eq!(
-                    branch.moment_about_one(4),
-                    fourth,
-                    max_relative = 1e-10,
-                    epsilon = 1e-10
-                );
+        agree_about_one(&Woodcock { albedo: albedo(a) });
+        agree_about_one(&DoubleParticle { albedo: albedo(a) });
+        for version in [Version::Terminating, Version::NonTerminating, Version::Adaptive] {
+            agree_about_one(&single(version, a));
+        }
+    }
+}
+
+/// E[(W − 1)^k] expanded, for both particles and even and odd k, within the rounding of its greatest term.
+fn agree_about_one(model: &impl CollisionModel) {
+    for r in RATIOS.into_iter().filter(|&r| model.admits(r)) {
+        for branch in [model.scattered(r), model.transmitted(r)] {
+            let raw = |k: i32| if k == 0 { 1.0 } else { branch.moment(k) };
+            for (k, binomials) in [(2, [1.0, 2.0, 1.0].as_slice()), (3, &[1.0, 3.0, 3.0, 1.0])] {
+                let terms: Vec<f64> = (0..=k)
+                    .zip(binomials)
+                    .map(
+                        |(i, binomial)| if (k - i) % 2 == 0 { binomial * raw(i) } else { -binomial * raw(i) },
+                    )
+                    .collect();
+                let size: f64 = terms.iter().map(|term| term.abs()).sum();
+                let off = branch.moment_about_one(k) - terms.iter().sum::<f64>();
+                assert!(off.abs() <= 1e-14 * size, "r = {r}, k = {k}: {branch:?}");
             }
         }
     }
+}
+
+#[test]
+fn moments_are_smooth_but_for_the_kinks_that_are_told() {
+    for a in ALBEDOS {
+        for version in [Version::NonTerminating, Version::Adaptive] {
+            let model = single(version, a);
+            let moments = |r: f64| {
+                [model.scattered(r), model.transmitted(r)]
+                    .map(|branch| [branch.moment(2), branch.moment_about_one(2)])
+            };
+            // A jump of the slope is one of the second difference over the step; a curvature is a step less.
+            const STEP: f64 = 1e-6;
+            let has_kink = |r: f64| {
+                let [low, at, high] = [r - STEP, r, r + STEP].map(moments);
+                (0..4).any(|i| {
+                    let [low, at, high] = [low, at, high].map(|moments| moments[i / 2][i % 2]);
+                    ((high - at) - (at - low)).abs() > 1e-3 * STEP
+                })
+            };
+            let everywhere = (-30..30).map(|i| f64::from(i) / 10.0 + 0.05).chain([0.0, 1.0, 2.0 / (1.0 + a)]);
+            for r in everywhere.filter(|&r| has_kink(r)) {
+                assert!(model.kinks().contains(&r), "{version:?}, a = {a}: a kink at {r}");
+            }
+        }
+    }
+    assert!(Woodcock { albedo: albedo(0.5) }.kinks().is_empty());
 }
 
 #[test]

@@ -202,6 +202,11 @@ mod tests {
         assert_eq!(sample(&[0.5, 0.24, variate(0.1), 0.2, 0.25, 0.74, past]), Some(1.25));
         // At 0.1 it does not collide, and passes.
         assert_eq!(sample(&[0.5, 0.24, variate(0.1), 0.3, past]), Some(0.5));
+        // Both decisions change at the number itself.
+        let (below, there) = (0.25_f64.next_down(), 0.25);
+        assert_eq!(sample(&[0.5, below, variate(0.1), below, 0.25, 0.75_f64.next_down(), past]), Some(1.25));
+        assert_eq!(sample(&[0.5, below, variate(0.1), there, past]), Some(0.5));
+        assert_eq!(sample(&[0.5, there, 0.5, 0.75]), None);
     }
 
     #[test]

@@ -46,6 +46,6 @@ pub use inversion::Inversion;
 pub use jittered::{EpsilonError, JitteredFlight};
 pub use newton::Newton;
 pub use regular::Regular;
-pub use theory::{ClosedForm, HIGHEST_MOMENT};
+pub use theory::{ClosedForm, HIGHEST_MOMENT, lookups_of_a_walk};
 pub use tracking::Tracking;
 pub use woodcock::Woodcock;

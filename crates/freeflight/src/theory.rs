@@ -71,7 +71,7 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
 /// The two kinds are independent Poisson processes. A flight ends at s with the density ending(s) exp(−∫ ending), and has
 /// then looked up once more than the Poisson number P of mean ν(s) = ∫_0^s of the other rate; one that leaves the profile
 /// has looked up P times.
-pub(crate) fn lookups_of_a_walk<F: Extinction>(
+pub fn lookups_of_a_walk<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
     rates: &dyn Fn(f64, f64) -> [f64; 2],
@@ -135,6 +135,18 @@ fn one_more_to(k: usize, raw: &[f64; HIGHEST_MOMENT]) -> f64 {
     sum
 }
 
+/// factor · exp(exponent) · score: 0 where a factor is 0, and infinite only where the product is. exp(exponent) by itself may be either.
+#[inline]
+pub(crate) fn times_exp(factor: f64, exponent: f64, score: f64) -> f64 {
+    if exponent.abs() < 600.0 {
+        return factor * exponent.exp() * score;
+    }
+    if factor == 0.0 || score == 0.0 {
+        return 0.0;
+    }
+    factor.signum() * score.signum() * (exponent + factor.abs().ln() + score.abs().ln()).exp()
+}
+
 /// x, x², …, x⁸.
 pub(crate) fn powers(x: f64) -> [f64; HIGHEST_MOMENT] {
     let mut power = 1.0;
@@ -147,6 +159,17 @@ pub(crate) fn powers(x: f64) -> [f64; HIGHEST_MOMENT] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_product_with_an_exponential_is_what_it_is() {
+        let exact = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+        assert_eq!(times_exp(3.0, -2.0, 0.5), 3.0 * (-2.0_f64).exp() * 0.5);
+        assert!(exact(times_exp(1e-300, 900.0, -2.0), -2.0 * (900.0 - 300.0 * 10.0_f64.ln()).exp()));
+        assert!(exact(times_exp(-1e200, -800.0, 1e100), -(300.0 * 10.0_f64.ln() - 800.0).exp()));
+        // 0 · ∞ would be no number.
+        assert_eq!([times_exp(0.0, 5000.0, 1.0), times_exp(2.0, 5000.0, 0.0)], [0.0, 0.0]);
+        assert_eq!([times_exp(1.0, 5000.0, -1.0), times_exp(1.0, -5000.0, 1.0)], [f64::NEG_INFINITY, 0.0]);
+    }
 
     #[test]
     fn moments_of_a_poisson_variate() {

@@ -1,7 +1,7 @@
 //! Free flights with an arbitrary sampling extinction: the single particle model up to its first scattering
 //! (szirmay-kalos-2017 eq. 9 and 12).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, powers};
+use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, powers, times_exp};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_collision::{
     Albedo, AlbedoError, CollisionModel, Outcome, SingleOutcome, SingleParticle, Version,
@@ -84,6 +84,15 @@ impl<R: InvertOpticalThickness> Tracking<R> {
         let transmitted = self.model.transmitted(r);
         std::array::from_fn(|i| sampling * (transmitted.moment(i as i32 + 1) - 1.0))
     }
+
+    /// Splits the ray where the moments of a collision are not smooth in r.
+    fn split_at_kinks<F: Extinction>(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) {
+        for kink in self.model.kinks() {
+            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
+                self.at(s, sigma_t).map_or(1.0, |(_, ratio)| ratio - kink)
+            });
+        }
+    }
 }
 
 impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Tracking<R> {
@@ -123,6 +132,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
         tolerance: Tolerance,
         score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
+        self.split_at_kinks(quadrature, tolerance);
         quadrature.integrate_nested(
             tolerance,
             |s, sigma_t| self.growth(s, sigma_t),
@@ -130,13 +140,14 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
                 let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; HIGHEST_MOMENT] };
                 let (scattered, scores) = (self.model.scattered(r), powers(score(s)));
                 std::array::from_fn(|i| {
-                    sampling * scattered.moment(i as i32 + 1) * growth[i].exp() * scores[i]
+                    times_exp(sampling * scattered.moment(i as i32 + 1), growth[i], scores[i])
                 })
             },
         )
     }
 
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
+        self.split_at_kinks(quadrature, tolerance);
         quadrature.integrate(tolerance, |s, sigma_t| self.growth(s, sigma_t)).value.map(f64::exp)
     }
 
@@ -145,6 +156,7 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
     ) -> Option<[f64; HIGHEST_MOMENT]> {
+        self.split_at_kinks(quadrature, tolerance);
         Some(lookups_of_a_walk(quadrature, tolerance, &|s, sigma_t| {
             let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; 2] };
             [self.model.scattered(r).probability, self.model.transmitted(r).probability].map(|q| sampling * q)

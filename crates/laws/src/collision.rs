@@ -1,6 +1,7 @@
 //! The law of a collision model as a function: exact algebra, no sampling.
 
-use fairflight_collision::{Branch, CollisionModel};
+use crate::exact::decisions::expectations;
+use fairflight_collision::{Branch, CollisionModel, Outcome, SingleOutcome};
 use fairflight_sources::Scripted;
 
 /// Ratios of every kind: both signs, next to the kinks at 0 and 1, tiny and huge.
@@ -32,8 +33,8 @@ pub enum Broken {
         /// What it has.
         found: f64,
     },
-    /// Drawn weights are not those of the stated branch.
-    #[error("at r = {r} the drawn weights are {found} on average, not {expected}")]
+    /// Drawn weights, or their squares, are not those of the stated branch.
+    #[error("at r = {r} the drawn weights, or their squares, are {found} on average, not {expected}")]
     Draw {
         /// The ratio.
         r: f64,
@@ -44,11 +45,11 @@ pub enum Broken {
     },
 }
 
-/// How many equidistant variates stand for all of \[0, 1).
-const STRATA: u32 = 1000;
+/// What rounding of a threshold, and of the sum over its two sides, leaves of a mean, per unit of 1 + |energy|.
+const THRESHOLD: f64 = 1e-12;
 
 /// Checks szirmay-kalos-2017 eq. 8, E\[scattered\] = a r and E\[transmitted\] = 1 − r, at every one of `ratios` that the
-/// model admits, and that `transmit` draws what `transmitted` states.
+/// model admits, and that `transmit` draws what `transmitted` states: over all of its variate, exactly.
 ///
 /// # Errors
 /// At the first ratio that breaks the law.
@@ -57,14 +58,45 @@ pub fn check<M: CollisionModel>(model: &M, albedo: f64, ratios: &[f64]) -> Resul
         let transmitted = model.transmitted(r);
         check_branch("scattered", r, model.scattered(r), albedo * r)?;
         check_branch("transmitted", r, transmitted, 1.0 - r)?;
-        // One variate in the middle of each stratum: a threshold moves the share of survivors by one stratum at most.
-        let drawn: f64 = (0..STRATA)
-            .map(|i| (f64::from(i) + 0.5) / f64::from(STRATA))
-            .filter_map(|u| model.transmit(r, &mut Scripted::new([u])))
-            .sum();
-        let (found, expected) = (drawn / f64::from(STRATA), transmitted.moment(1));
-        let granted = transmitted.energy.abs() / f64::from(STRATA);
-        if (found - expected).abs() > granted + 1e-9 * expected.abs() {
+        let drawn = expectations(|u| powers(model.transmit(r, &mut Scripted::new([u]))));
+        check_draws(r, transmitted, drawn)?;
+    }
+    Ok(())
+}
+
+/// Checks that `collide` scatters and transmits with the probabilities and energies that `scattered` and `transmitted` state, at
+/// every one of `ratios` that the model admits.
+///
+/// # Errors
+/// At the first ratio that breaks the law.
+pub fn check_outcomes<M: SingleOutcome>(model: &M, ratios: &[f64]) -> Result<(), Broken> {
+    for &r in ratios.iter().filter(|&&r| model.admits(r)) {
+        let [s, s2, t, t2] = expectations(|u| {
+            let (scattered, transmitted) = match model.collide(r, &mut Scripted::new([u])) {
+                Outcome::Scattered(energy) => (Some(energy), None),
+                Outcome::Transmitted(energy) => (None, Some(energy)),
+                Outcome::Absorbed => (None, None),
+            };
+            let ([s, s2], [t, t2]) = (powers(scattered), powers(transmitted));
+            [s, s2, t, t2]
+        });
+        check_draws(r, model.scattered(r), [s, s2])?;
+        check_draws(r, model.transmitted(r), [t, t2])?;
+    }
+    Ok(())
+}
+
+/// An energy and its square; 0 for a particle that does not leave.
+fn powers(energy: Option<f64>) -> [f64; 2] {
+    energy.map_or([0.0; 2], |energy| [energy, energy * energy])
+}
+
+/// Mean and mean square of what is drawn against those of the branch.
+fn check_draws(r: f64, branch: Branch, drawn: [f64; 2]) -> Result<(), Broken> {
+    for (k, found) in [1, 2].into_iter().zip(drawn) {
+        let expected = branch.moment(k);
+        let granted = THRESHOLD * (1.0 + branch.energy.abs().powi(k));
+        if found.is_nan() || (found - expected).abs() > granted {
             return Err(Broken::Draw { r, found, expected });
         }
     }
@@ -98,7 +130,9 @@ mod tests {
             check(&DoubleParticle { albedo }, a, &RATIOS).unwrap();
             for version in [Version::Terminating, Version::NonTerminating, Version::Adaptive] {
                 check(&SingleParticle { version, albedo }, a, &RATIOS).unwrap();
+                check_outcomes(&SingleParticle { version, albedo }, &RATIOS).unwrap();
             }
+            check_outcomes(&Woodcock { albedo }, &RATIOS).unwrap();
         }
     }
 }

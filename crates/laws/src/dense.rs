@@ -1,6 +1,6 @@
 //! A small lattice as data: what voxel laws and hard cases run on, without a file.
 
-use fairflight_media::Lattice;
+use fairflight_media::{Lattice, lerp};
 
 /// Values at the integer coordinates 0 … n − 1 of each axis, z fastest, zero outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,6 @@ impl Lattice for DenseLattice {
     #[inline]
     fn trilinear(&self, x: f64, y: f64, z: f64) -> f64 {
         let (x0, y0, z0) = (x.floor(), y.floor(), z.floor());
-        let lerp = |t: f64, low: f64, high: f64| (1.0 - t) * low + t * high;
         let along_z = |x: f64, y: f64| lerp(z - z0, self.at(x, y, z0), self.at(x, y, z0 + 1.0));
         let along_y = |x: f64| lerp(y - y0, along_z(x, y0), along_z(x, y0 + 1.0));
         lerp(x - x0, along_y(x0), along_y(x0 + 1.0))

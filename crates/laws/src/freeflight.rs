@@ -99,6 +99,27 @@ impl FlightExpectation {
         }
     }
 
+    /// The look-ups, where their number is judged. An expected number of 0 is a fact about each flight, not about their mean.
+    fn counts(&self) -> Option<Reference> {
+        self.lookups.filter(|reference| reference.mean > 0.0)
+    }
+
+    /// How many tests share the false alarm.
+    fn tests(&self) -> usize {
+        TEST_FUNCTIONS.len() + 1 + usize::from(self.counts().is_some()) + usize::from(self.tests_distances())
+    }
+
+    fn tests_distances(&self) -> bool {
+        self.weights == Weights::One
+    }
+
+    /// The same run with as many flights as the closed moments of scores and look-ups ask for, where they are known.
+    #[must_use]
+    pub fn sufficient(&self, run: Run) -> Run {
+        let references = self.collided.into_iter().chain([self.escaped]).chain(self.counts());
+        run.sufficient_for(references, run.alpha / self.tests() as f64)
+    }
+
     /// Without a word on look-ups.
     pub(crate) fn uncounted(&self) -> Self {
         Self { lookups: None, ..self.clone() }
@@ -263,12 +284,9 @@ pub(crate) fn measure(
 
 impl Measured {
     pub(crate) fn judged(mut self, expected: &FlightExpectation, run: Run) -> FlightEvidence {
-        // An expected number of look-ups of 0 is a fact about each flight, not about their mean.
         let none = expected.lookups.is_some_and(|reference| reference.mean == 0.0);
-        let counts = expected.lookups.filter(|_| !none);
-        let tests_distances = expected.weights == Weights::One;
-        let parts = TEST_FUNCTIONS.len() + 1 + usize::from(counts.is_some()) + usize::from(tests_distances);
-        let share = run.alpha / parts as f64;
+        let (counts, tests_distances) = (expected.counts(), expected.tests_distances());
+        let share = run.alpha / expected.tests() as f64;
 
         let names = TEST_FUNCTIONS.iter().map(|(name, _)| *name).chain(["escaped"]);
         let measured = self.collided.iter().chain([&self.escaped]);

@@ -33,11 +33,17 @@ pub enum Kind {
     Hybrid,
     /// Two combs: a biased baseline.
     Jackknife,
+    /// The closed form itself.
+    Regular,
+    /// One comb with a random shift: a biased baseline.
+    Naive,
+    /// Ratio tracking with a guess that is raised to what it finds: a biased baseline.
+    ProgressiveMajorant,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 18] = [
         Self::Woodcock,
         Self::DoubleParticle,
         Self::SingleParticle,
@@ -53,6 +59,9 @@ impl Kind {
         Self::ResidualCells,
         Self::Hybrid,
         Self::Jackknife,
+        Self::Regular,
+        Self::Naive,
+        Self::ProgressiveMajorant,
     ];
 
     /// The name in an experiment.
@@ -74,80 +83,9 @@ impl Kind {
             Self::ResidualCells => "residual_cells",
             Self::Hybrid => "hybrid",
             Self::Jackknife => "jackknife",
+            Self::Regular => "regular",
+            Self::Naive => "naive",
+            Self::ProgressiveMajorant => "progressive_majorant",
         }
-    }
-
-    /// The kinds that a check in words is about: those named in it, the versions of the single particle model, and the
-    /// double particle model where it goes by its special cases.
-    #[must_use]
-    pub(crate) fn named_in(words: &str) -> Vec<Self> {
-        let words = words.to_lowercase().replace(['_', '-'], " ");
-        if words.contains("every sampler") {
-            return Self::ALL.to_vec();
-        }
-        let names = |kind: Self| -> &[&str] {
-            match kind {
-                Self::Woodcock => &["woodcock"],
-                Self::DoubleParticle => &[
-                    "double particle",
-                    "ratio tracking",
-                    "below the extinction",
-                    "residual",
-                    "difference",
-                    "piecewise",
-                    "explorers",
-                    "control",
-                ],
-                Self::SingleParticle => &["single particle", "terminating", "adaptive"],
-                Self::LineIntegral => &["line integral"],
-                Self::RayMarching => &["ray marching"],
-                Self::NextFlight => &["next flight", "unidirectional", "bidirectional"],
-                Self::PSeries => &["p series"],
-                Self::GeneralisedPoisson => &["generalised poisson"],
-                Self::AdaptiveRatio => &["adaptive ratio"],
-                Self::UnbiasedRayMarching => &["comb", "unbiased ray marching"],
-                Self::Telescoping => &["telescoping"],
-                Self::JitteredRatio => &["jittered ratio"],
-                Self::ResidualCells => &["residual cells"],
-                Self::Hybrid => &["hybrid"],
-                Self::Jackknife => &["jackknife"],
-            }
-        };
-        // What another name begins or ends with.
-        let other = |kind: Self| match kind {
-            Self::SingleParticle => words.contains("adaptive ratio"),
-            Self::NextFlight => words.contains("p series"),
-            Self::DoubleParticle => words.contains("jittered ratio") || words.contains("residual cells"),
-            Self::RayMarching => words.contains("unbiased ray marching"),
-            _ => false,
-        };
-        // A version of the single particle model is one also "below the extinction".
-        let single = names(Self::SingleParticle).iter().any(|name| words.contains(name));
-        Self::ALL
-            .into_iter()
-            .filter(|&kind| !other(kind))
-            .filter(|&kind| !(single && kind == Self::DoubleParticle && !words.contains("double particle")))
-            .filter(|&kind| names(kind).iter().any(|name| words.contains(name)))
-            .collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Kind;
-
-    #[test]
-    fn words_name_kinds() {
-        assert_eq!(Kind::named_in("ratio_tracking"), [Kind::DoubleParticle]);
-        assert_eq!(Kind::named_in("adaptive albedo 0.5 below the extinction"), [Kind::SingleParticle]);
-        assert_eq!(Kind::named_in("woodcock, line integral"), [Kind::Woodcock, Kind::LineIntegral]);
-        assert_eq!(Kind::named_in("adaptive ratio 0.1"), [Kind::AdaptiveRatio]);
-        assert_eq!(Kind::named_in("p_series_next_flight"), [Kind::PSeries]);
-        assert_eq!(Kind::named_in("comb_bernoulli_2"), [Kind::UnbiasedRayMarching]);
-        assert_eq!(Kind::named_in("jittered ratio tracking"), [Kind::JitteredRatio]);
-        assert_eq!(Kind::named_in("residual_cells_rate_2"), [Kind::ResidualCells]);
-        assert_eq!(Kind::named_in("unidirectional"), [Kind::NextFlight]);
-        assert_eq!(Kind::named_in("every sampler").len(), Kind::ALL.len());
-        assert!(Kind::named_in("clipped ray").is_empty());
     }
 }

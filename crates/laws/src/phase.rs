@@ -1,6 +1,6 @@
 //! The law of a phase function: normalised, its mean cosine, and drawn as it is evaluated.
 
-use crate::{CheckResult, Run, batch_count, batch_size};
+use crate::{CheckResult, PValue, Run, batch_count, batch_size};
 use fairflight_media::{PhaseFunction, Tolerance, adaptive_integral};
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_stats::{GoodnessOfFit, chi_square};
@@ -96,6 +96,10 @@ impl Evidence {
             holds: self.holds(),
             samples,
             mean_z: self.mean_z,
+            p_values: [("cosine", &self.cosine), ("azimuth", &self.azimuth)]
+                .into_iter()
+                .filter_map(|(name, fit)| PValue::of_fit(fit, name))
+                .collect(),
             detectable_relative_bias: self
                 .cosine
                 .detectable

@@ -1,7 +1,7 @@
 //! The outcome of one named check, for a table.
 
-use crate::{Evidence, Refusal};
-use fairflight_stats::Verdict;
+use crate::{Evidence, PValue, Refusal};
+use fairflight_stats::{MeanTest, Verdict};
 
 /// What a check found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +20,11 @@ pub struct CheckResult {
     pub lookups_z: Option<f64>,
     /// The smallest relative bias of the mean that the run would have detected with probability 0.99.
     pub detectable_relative_bias: Option<f64>,
+    /// The p-value of each test.
+    pub p_values: Vec<PValue>,
+    /// The share of N that normal approximations ask for, at worst over the tests that use one
+    /// ([`Verdict::normal_samples`]): from 1 on the check is not testable.
+    pub normal_share: Option<f64>,
     /// The N that would make the mean testable, where it is not.
     pub samples_needed: Option<f64>,
     /// Why, in words.
@@ -44,6 +49,8 @@ impl CheckResult {
             variance_is_tested: verdict.variance_p.is_some(),
             lookups_z: None,
             detectable_relative_bias: verdict.detectable_relative_bias,
+            p_values: PValue::of_verdict(verdict, "mean"),
+            normal_share: normal_share(verdict, samples),
             samples_needed: verdict.samples_needed,
             reason: verdict.reason.clone(),
         }
@@ -60,8 +67,13 @@ impl CheckResult {
         let lookups = evidence.lookups_verdict.as_ref();
         let reason =
             lookups.map_or("not tested (their number has no closed form)", |verdict| &verdict.reason);
+        let mut p_values = estimates.p_values;
+        p_values.extend(lookups.into_iter().flat_map(|verdict| PValue::of_verdict(verdict, "look-ups")));
+        let of_lookups = lookups.and_then(|verdict| normal_share(verdict, estimates.samples));
         Self {
             holds: evidence.holds(),
+            normal_share: greater(estimates.normal_share, of_lookups),
+            p_values,
             lookups_z: lookups.and_then(|verdict| verdict.mean_z),
             reason: format!("{}; look-ups {reason}", estimates.reason),
             ..estimates
@@ -85,10 +97,23 @@ impl CheckResult {
                 whole.mean_z = part.mean_z;
             }
             whole.samples = whole.samples.max(part.samples);
+            whole.normal_share = greater(whole.normal_share, part.normal_share);
+            whole.p_values.extend(part.p_values.into_iter().map(|p_value| p_value.within(name)));
             weakest = weakest.zip(part.detectable_relative_bias).map(|(a, b)| a.max(b));
             let separator = if whole.reason.is_empty() { "" } else { "; " };
             whole.reason = format!("{}{separator}{name}: {}", whole.reason, part.reason);
         }
         Self { detectable_relative_bias: weakest, ..whole }
     }
+}
+
+/// What of `samples` a normal approximation asks for; `None` for a test that needs none.
+pub(crate) fn normal_share(verdict: &Verdict, samples: u64) -> Option<f64> {
+    let asks = matches!(verdict.mean_test, MeanTest::Normal | MeanTest::NotTestable);
+    asks.then(|| verdict.normal_samples / samples as f64)
+}
+
+/// The greater one of those that are there.
+pub(crate) fn greater(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    one.into_iter().chain(other).reduce(f64::max)
 }

@@ -46,6 +46,24 @@ impl Expectation {
             Some(theory.relative_variance_bound).filter(|bound| one == 1.0 && bound.is_finite());
         Reference { error, moments, variance_bound, scores: *scores, ..Reference::exact(mean) }
     }
+
+    /// What the look-ups are judged against; `None` where nothing is known of them.
+    #[must_use]
+    pub fn lookups_reference(&self) -> Option<Reference> {
+        lookups::reference(self.theory.lookups, self.lookups)
+    }
+
+    /// The share of the false alarm that goes to the estimates, and again to the look-ups where these are judged.
+    fn level(&self, alpha: f64) -> f64 {
+        if self.lookups_reference().is_some() { 0.5 * alpha } else { alpha }
+    }
+
+    /// The same run with as many samples as the closed moments of estimates and look-ups ask for, where they are known.
+    #[must_use]
+    pub fn sufficient(&self, run: Run) -> Run {
+        let level = self.level(run.alpha);
+        run.sufficient_for([Some(self.reference()), self.lookups_reference()].into_iter().flatten(), level)
+    }
 }
 
 /// What came out of a run.
@@ -134,8 +152,7 @@ where
         estimates.merge(&batch_moments(run.seed, batch, &values)?);
         lookups.merge(&Moments::from_slice(&counts));
     }
-    let lookups_reference = lookups::reference(expected.theory.lookups, expected.lookups);
-    let level = if lookups_reference.is_some() { 0.5 * run.alpha } else { run.alpha };
+    let (lookups_reference, level) = (expected.lookups_reference(), expected.level(run.alpha));
     Ok(Evidence {
         verdict: judge(&estimates, &expected.reference(), level),
         lookups_verdict: lookups_reference.map(|reference| judge(&lookups, &reference, level)),

@@ -246,6 +246,24 @@ mod tests {
     }
 
     #[test]
+    fn no_rounding_carries_a_value_beyond_the_bounds() {
+        // Around the greatest values (x + y + z a multiple of 4π/3, z = π + 4πm) and the least, a rounding apart.
+        for scale in [1.0, 0.7, -0.3, 2000.0 / 3.0] {
+            let medium = AnalyticCosine::new(scale).unwrap();
+            let bounds = medium.lower_bound().unwrap()..=medium.upper_bound().unwrap();
+            for (k, m) in (-40..40).flat_map(|k| (-3..3).map(move |m| (k, m))) {
+                let z = std::f64::consts::PI * (1.0 + 4.0 * f64::from(m));
+                let mut sum = std::f64::consts::PI * 2.0 / 3.0 * f64::from(k);
+                for _ in 0..20 {
+                    let value = medium.sigma_t(dvec3(sum - z, 0.0, z));
+                    assert!(bounds.contains(&value), "{value} at {sum}, {z}");
+                    sum = sum.next_up();
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_bounds_follow_the_sign_of_the_scale() {
         let bounds = |scale| AnalyticCosine::new(scale).map(|m| (m.lower_bound(), m.upper_bound())).unwrap();
         assert_eq!(bounds(2.0), (Some(0.0), Some(2.0)));

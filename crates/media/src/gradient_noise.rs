@@ -37,6 +37,19 @@ const GRADIENTS: [[f64; 3]; 16] = [
 const AMPLITUDE: f64 = 1.154_700_538_379_251_5;
 
 impl GradientNoise {
+    /// A bound of the slope along any axis within a cell, before the clamp.
+    ///
+    /// With n = Σ W_c L_c over the corners, W_c the weights, L_c = g_c · (x − c) and ∂n = Σ W_c ∂L_c + Σ ∂W_c L_c: |∂L_c| ≤ 1, since a gradient has
+    /// components of size 0 and 1; Σ |∂W_c| ≤ 2 · 15/8, twice the steepest slope of the quintic; |L_c| ≤ 2, since two components do not vanish.
+    pub(crate) const STEEPEST: f64 = (1.0 + 2.0 * 1.875 * 2.0) * AMPLITUDE;
+
+    /// A bound of the second derivative along any unit vector e within a cell, before the clamp.
+    ///
+    /// On the diagonal |Σ ∂∂W_c L_c| ≤ 2 · 10/√3 · 2, with the greatest second derivative of the quintic, and |2 Σ ∂W_c ∂L_c| ≤ 4 · 15/8; off it
+    /// 4 (15/8)² · 2 and 4 · 15/8. In e: Σ e_a² = 1, and 2 Σ_{a<b} |e_a e_b| ≤ 2.
+    pub(crate) const MOST_CURVED: f64 =
+        ((4.0 * 5.773_502_691_896_258 + 7.5) + 2.0 * (8.0 * 1.875 * 1.875 + 7.5)) * AMPLITUDE;
+
     pub(crate) fn new(seed: u32) -> Self {
         let table = PermutationTable::new(seed);
         // The hash of a single coordinate is the entry of the table itself, a byte.
@@ -50,6 +63,12 @@ impl GradientNoise {
     /// The noise in \[−1, 1\] at a point whose coordinates fit a 32-bit integer.
     #[inline]
     pub(crate) fn at(&self, point: DVec3) -> f64 {
+        self.before_the_clamp(point).clamp(-1.0, 1.0)
+    }
+
+    /// The same before it is clamped: within a cell of the lattice a polynomial of the coordinates, of degree 6 in each and 16 in all.
+    #[inline]
+    pub(crate) fn before_the_clamp(&self, point: DVec3) -> f64 {
         debug_assert!(
             point.abs().max_element() < 2f64.powi(31),
             "the corner of the cell is a 32-bit integer"
@@ -82,7 +101,7 @@ impl GradientNoise {
             mix(slope(h110, x1, y1, z), slope(h111, x1, y1, z1), w),
             v,
         );
-        (mix(near, far, u) * AMPLITUDE).clamp(-1.0, 1.0)
+        mix(near, far, u) * AMPLITUDE
     }
 }
 
@@ -146,5 +165,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn slopes_and_curvatures_stay_below_their_bounds() {
+        let noise = GradientNoise::new(3);
+        let mut state = 8u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 * 2f64.powi(-53) - 0.5
+        };
+        let (mut steepest, mut most_curved) = (0.0_f64, 0.0_f64);
+        for _ in 0..100_000 {
+            let point = 100.0 * dvec3(next(), next(), next());
+            let step = 1e-4 * dvec3(next(), next(), next()).normalize();
+            let [before, at, after] = [-1.0, 0.0, 1.0].map(|t| noise.before_the_clamp(point + t * step));
+            steepest = steepest.max((after - before).abs() / 2e-4);
+            most_curved = most_curved.max((after - 2.0 * at + before).abs() / 1e-8);
+        }
+        assert!((2.0..GradientNoise::STEEPEST * 3f64.sqrt()).contains(&steepest), "{steepest}");
+        assert!((10.0..GradientNoise::MOST_CURVED).contains(&most_curved), "{most_curved}");
     }
 }

@@ -48,12 +48,12 @@ impl IntervalBounds for PiecewiseConstant {
     }
 }
 
-/// Exact but for the rounding of an interpolated value.
+/// Exact where a node is the extreme, else to the rounding of an interpolated value.
 impl IntervalBounds for PiecewiseLinear {
     fn bounds_between(&self, from: f64, to: f64) -> (f64, f64) {
-        let ends = [self.sigma_t(from), self.sigma_t(to)];
-        let (low, high) = range_of(self.nodes_between(from, to).iter().copied().chain(ends));
-        widened(low, high)
+        self.bounds_in_pieces(from, to).fold((f64::INFINITY, f64::NEG_INFINITY), |hull, bounds| {
+            (hull.0.min(bounds.0), hull.1.max(bounds.1))
+        })
     }
 }
 

@@ -14,13 +14,14 @@
 //! | [`BoundedInCells`] | both bounds in each of many cells |
 //! | [`IntervalBounds`] | both bounds between any two distances, hence in cells |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
+//! | [`Enclosed`] | its range and integral on any stretch, with a bound of the error |
 //! | [`SpectralExtinction`] | σ_t(s) of N wavelengths by one look-up; [`SpectralMajorant`] and others as above |
 //!
 //! A medium with [`BoxBounds`] fills a [`BoundGrid`], which gives a ray its cells.
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
 //! Quadrature of a profile ([`RayQuadrature`]) is the reference that estimators are judged against; it is not an
-//! estimator.
+//! estimator. A [`Certificate`] proves the error of an optical thickness, or says what it could not prove.
 
 mod analytic_cosine;
 mod bound_cells;
@@ -30,12 +31,15 @@ mod bounds;
 mod cells;
 mod constant;
 mod empty_space;
+mod enclosure;
 mod error;
 mod expression;
 mod extinction;
 mod gradient_noise;
 mod homogeneous;
 mod inside;
+mod interpolation;
+mod interval;
 mod interval_bounds;
 mod lattice_planes;
 mod medium;
@@ -47,6 +51,7 @@ mod piecewise_constant;
 mod piecewise_linear;
 mod quadrature;
 mod ray;
+mod rounding;
 mod spectral;
 mod voxels;
 mod watched;
@@ -59,12 +64,14 @@ pub use bounds::{Bounds, Clip};
 pub use cells::{Cells, LineCells};
 pub use constant::Constant;
 pub use empty_space::EmptySpace;
+pub use enclosure::{Certificate, Certified, Doubt, Enclosed, LineEnclosed, Stretch};
 pub use error::FieldError;
 pub use expression::{ExpressionError, ExpressionFieldError, ExpressionMedium, ExpressionProfile};
 pub use extinction::{
     Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, Vacuum,
 };
 pub use homogeneous::Homogeneous;
+pub use interpolation::lerp;
 pub use interval_bounds::IntervalBounds;
 pub use medium::{Line, LineThickness, Medium, MediumBreakpoints};
 pub use medium_bounds::{BoxBounds, Boxes};
@@ -75,6 +82,7 @@ pub use piecewise_constant::PiecewiseConstant;
 pub use piecewise_linear::PiecewiseLinear;
 pub use quadrature::{Cumulative, Integral, RayQuadrature, Tolerance, adaptive_integral};
 pub use ray::Ray;
+pub use rounding::rounding_of_difference;
 pub use spectral::{
     Profiles, Scaled, SpectralBreakpoints, SpectralExtinction, SpectralMajorant, SpectralOpticalThickness,
     Wavelength,

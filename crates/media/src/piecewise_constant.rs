@@ -108,8 +108,8 @@ impl InvertOpticalThickness for PiecewiseConstant {
         let cell = after.partition_point(|&at_edge| at_edge <= target);
         let sigma_t = *self.sigma_t.get(cell)?;
         let s = self.edges[cell] + (target - self.depth_at_edge[cell]) / sigma_t;
-        // Rounding may carry s over the cell's far edge, or back before the start.
-        let s = s.max(from);
+        // Rounding may carry s to the cell's far edge, behind which there may be no extinction, or back before the start.
+        let s = s.min(self.edges[cell + 1].next_down()).max(from);
         (s < self.length()).then_some(s)
     }
 }
@@ -149,6 +149,21 @@ mod tests {
         assert_eq!(field.invert(0.5, 1.25), Some(3.5));
         assert_eq!(field.invert(2.0, 0.25), Some(3.5));
         assert_eq!(field.invert(0.0, 2.5), None);
+    }
+
+    #[test]
+    fn no_flight_ends_where_there_is_nothing() {
+        // Depths a few roundings short of the end of a cell, behind which σ_t is 0: the flight must end before it.
+        let field = PiecewiseConstant::new(vec![0.0, 0.8, 2.3, 2.9], vec![0.0, 1.4, 0.0]).unwrap();
+        let (mut depth, mut landed) = (field.optical_thickness(0.0, 2.3), 0);
+        for _ in 0..8 {
+            depth = depth.next_down();
+            if let Some(s) = field.invert(0.0, depth) {
+                assert!(field.sigma_t(s) > 0.0, "{s}");
+                landed += 1;
+            }
+        }
+        assert!(landed > 4);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Extinction interpolated linearly between n nodes.
 
+use crate::interpolation::{lerp, lerp_bounds};
 use crate::{
     Breakpoints, Extinction, FieldError, InvertOpticalThickness, Majorant, Minorant, OpticalThickness,
 };
@@ -40,11 +41,14 @@ impl PiecewiseLinear {
         &self.positions[1..self.positions.len() - 1]
     }
 
-    /// The values of the nodes on `from < s < to`.
-    pub(crate) fn nodes_between(&self, from: f64, to: f64) -> &[f64] {
-        let first = self.positions.partition_point(|&node| node <= from);
-        let end = self.positions.partition_point(|&node| node < to);
-        &self.sigma_t[first..end.max(first)]
+    /// Bounds of σ_t on each piece that `from ≤ s < to` touches, there.
+    pub(crate) fn bounds_in_pieces(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let first = self.piece(from);
+        let last = self.inner_nodes().partition_point(|&node| node < to).max(first);
+        (first..=last).map(move |i| {
+            let ends = [from.max(self.positions[i]), to.min(self.positions[i + 1])];
+            lerp_bounds(ends.map(|s| self.value_in(i, s)), self.sigma_t[i], self.sigma_t[i + 1])
+        })
     }
 
     #[inline]
@@ -56,8 +60,7 @@ impl PiecewiseLinear {
     #[inline]
     fn value_in(&self, i: usize, s: f64) -> f64 {
         let t = (s - self.positions[i]) / (self.positions[i + 1] - self.positions[i]);
-        let t = t.clamp(0.0, 1.0);
-        (1.0 - t) * self.sigma_t[i] + t * self.sigma_t[i + 1]
+        lerp(t.clamp(0.0, 1.0), self.sigma_t[i], self.sigma_t[i + 1])
     }
 
     /// The trapezoid between two points of piece `i`.
@@ -111,25 +114,26 @@ impl InvertOpticalThickness for PiecewiseLinear {
         let thickness = self.thickness_in(first, from, end);
         if depth < thickness {
             let ends = (self.value_in(first, from), self.sigma_t[first + 1]);
-            return self.inside(from + inverse_in_piece(ends, end - from, depth / thickness), from);
+            return self.reach((from, end), ends, depth / thickness);
         }
         // What is left is spent from the next node on. A piece without extinction never holds a depth strictly inside it.
         let depth = self.depth_at_node[first + 1] + (depth - thickness);
         let after = &self.depth_at_node[first + 2..];
         let i = first + 1 + after.partition_point(|&at_node| at_node <= depth);
         let end = *self.positions.get(i + 1)?;
-        let (start, ends) = (self.positions[i], (self.sigma_t[i], self.sigma_t[i + 1]));
         // In the depths that the piece was found with, so that the share is below 1.
         let share = (depth - self.depth_at_node[i]) / (self.depth_at_node[i + 1] - self.depth_at_node[i]);
-        self.inside(start + inverse_in_piece(ends, end - start, share), from)
+        self.reach((self.positions[i], end), (self.sigma_t[i], self.sigma_t[i + 1]), share)
     }
 }
 
 impl PiecewiseLinear {
-    /// `s`, unless rounding carried it to the end of the profile or back before `from`.
+    /// Where a stretch of one piece, with the extinctions `ends`, reaches this share of its optical thickness; `None` at the end of the
+    /// profile. Rounding may carry it to an end of the stretch: not where the extinction is 0 there, and no flight of positive depth ends.
     #[inline]
-    fn inside(&self, s: f64, from: f64) -> Option<f64> {
-        let s = s.max(from);
+    fn reach(&self, (start, end): (f64, f64), ends: (f64, f64), share: f64) -> Option<f64> {
+        let s = (start + inverse_in_piece(ends, end - start, share)).min(end.next_down());
+        let s = if s <= start && ends.0 == 0.0 && share > 0.0 { start.next_up() } else { s.max(start) };
         (s < self.length()).then_some(s)
     }
 }
@@ -159,6 +163,68 @@ impl Breakpoints for PiecewiseLinear {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::IntervalBounds;
+    use crate::interpolation::tests::any_number;
+    use proptest::prelude::*;
+
+    #[test]
+    fn equal_nodes_are_one_value() {
+        // Between 0.7 and 0.7 the sum of the two products is 0.7000000000000001 at some of these.
+        let flat = PiecewiseLinear::new(vec![0.0, 0.7, 3.0], vec![0.7; 3]).unwrap();
+        for i in 0..=3000 {
+            let s = 1e-3 * f64::from(i);
+            assert_eq!(flat.sigma_t(s), 0.7, "{s}");
+        }
+        assert_eq!(flat.bounds_between(0.1, 2.9), (0.7, 0.7));
+    }
+
+    #[test]
+    fn no_flight_ends_where_there_is_nothing() {
+        // A narrow tent far along, where distances are 1.5e-8 apart: flights near its end must not be rounded to it.
+        let (start, top, end) = (1e8, 1e8 + 1e-6, 1e8 + 2e-6);
+        let field =
+            PiecewiseLinear::new(vec![0.0, start, top, end, 2e8], vec![0.0, 0.0, 7e5, 0.0, 0.0]).unwrap();
+        let whole = field.optical_thickness(0.0, 2e8);
+        for share in (1..16).map(|k| 10_f64.powi(-k)).flat_map(|near| [near, 1.0 - near]) {
+            let s = field.invert(0.0, whole * share).unwrap();
+            assert!(field.sigma_t(s) > 0.0, "{s}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 1024, ..ProptestConfig::default() })]
+
+        #[test]
+        fn values_keep_to_their_bounds_and_attain_them(
+            nodes in prop::collection::vec((1e-12..1.0_f64, any_number()), 2..8),
+            at in prop::collection::vec(0.0..=1.0_f64, 24),
+            cuts in [0.0..1.0_f64, 0.0..1.0_f64],
+        ) {
+            let mut positions = vec![0.0];
+            nodes[1..].iter().for_each(|(width, _)| positions.push(positions[positions.len() - 1] + width));
+            let values: Vec<f64> = nodes.iter().map(|(_, value)| *value).collect();
+            let field = PiecewiseLinear::new(positions.clone(), values.clone()).unwrap();
+            let (whole, length) = ((field.minorant(), field.majorant()), field.length());
+            let inside = at.iter().map(|t| t * length).chain(positions.iter().flat_map(|p| [*p, p.next_down().max(0.0)]));
+            for s in inside.clone() {
+                let value = field.sigma_t(s);
+                prop_assert!((whole.0..=whole.1).contains(&value), "{value} at {s}");
+            }
+            for (position, value) in positions.iter().zip(&values) {
+                prop_assert_eq!(field.sigma_t(*position), *value);
+            }
+            prop_assert_eq!(field.bounds_between(0.0, length), whole);
+
+            let (from, to) = (cuts[0].min(cuts[1]) * length, cuts[0].max(cuts[1]) * length);
+            if from < to {
+                let (low, high) = field.bounds_between(from, to);
+                for s in inside.filter(|s| (from..to).contains(s)).chain([from, to.next_down()]) {
+                    let value = field.sigma_t(s);
+                    prop_assert!((low..=high).contains(&value), "{value} at {s}, [{low}, {high}]");
+                }
+            }
+        }
+    }
 
     #[test]
     fn values_and_integral_of_a_tent() {

@@ -7,7 +7,8 @@ use glam::{DAffine3, DVec3};
 /// Values at integer coordinates, interpolated between them.
 ///
 /// **Law.** `trilinear` is continuous, and linear in each coordinate by itself between two neighbouring integers; also
-/// where the lattice ends and its background begins. Outside it is defined everywhere.
+/// where the lattice ends and its background begins. Outside it is defined everywhere. It stays between the values at the eight corners
+/// around its point in floating point as well ([`crate::lerp`] does): where they agree, it is their value.
 pub trait Lattice {
     /// The interpolated value at a point in index coordinates.
     fn trilinear(&self, x: f64, y: f64, z: f64) -> f64;
@@ -232,14 +233,10 @@ pub(crate) mod tests {
         fn trilinear(&self, x: f64, y: f64, z: f64) -> f64 {
             let base = [x, y, z].map(f64::floor);
             let t = [x - base[0], y - base[1], z - base[2]];
-            let mut value = 0.0;
-            for corner in 0..8i64 {
-                let step = [corner & 1, corner >> 1 & 1, corner >> 2];
-                let weight: f64 =
-                    step.iter().zip(t).map(|(&s, t)| if s == 1 { t } else { 1.0 - t }).product();
-                value += weight * self.at([0, 1, 2].map(|i| base[i] as i64 + step[i]));
-            }
-            value
+            let corner = |step: [i64; 3]| self.at([0, 1, 2].map(|i| base[i] as i64 + step[i]));
+            let along_z = |i, j| crate::lerp(t[2], corner([i, j, 0]), corner([i, j, 1]));
+            let along_y = |i| crate::lerp(t[1], along_z(i, 0), along_z(i, 1));
+            crate::lerp(t[0], along_y(0), along_y(1))
         }
         fn maximum(&self) -> f64 {
             self.0.iter().copied().fold(0.25, f64::max)

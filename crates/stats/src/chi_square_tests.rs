@@ -107,3 +107,27 @@ fn scarce_cells_are_pooled_and_scarce_samples_are_not_testable() {
     assert_eq!(chi_square(&[500, 500], &[0.5, f64::NAN], 1e-6).sound, None);
     assert_eq!(chi_square(&[1, 500], &[0.0, 1.0], 1e-6).sound, Some(false));
 }
+
+#[test]
+fn a_statistic_by_hand() {
+    // (10² + 10² + 100² + 100²)/2500.
+    let fit = chi_square(&[2510, 2490, 2400, 2600], &[0.25; 4], 1e-3);
+    assert_relative_eq!(fit.statistic, 8.08, max_relative = 1e-14);
+    // Three degrees of freedom: erfc(√(x/2)) + √(2x/π) exp(−x/2), the former twice a normal tail.
+    let x: f64 = 8.08;
+    let tail =
+        crate::normal::two_sided_tail(x.sqrt()) + (2.0 * x / std::f64::consts::PI).sqrt() * (-0.5 * x).exp();
+    assert_relative_eq!(fit.p_value_bound.unwrap(), SAFETY * tail, max_relative = 1e-9);
+    assert_eq!(fit.sound, Some(true));
+}
+
+#[test]
+fn the_noncentrality_is_where_the_bound_of_its_lower_tail_meets_the_critical_value() {
+    // birge-2001 lemma 8.1: P(X ≤ d + λ − 2 √((d + 2λ) t)) ≤ exp(−t).
+    let t = -(1.0 - POWER).ln();
+    for (degrees, critical) in [(1_usize, 30.0), (3, 40.0), (19, 90.0), (63, 160.0)] {
+        let (d, lambda) = (degrees as f64, detectable_noncentrality(degrees, critical));
+        let reached = d + lambda - 2.0 * ((d + 2.0 * lambda) * t).sqrt();
+        assert_relative_eq!(reached, critical, max_relative = 1e-13);
+    }
+}

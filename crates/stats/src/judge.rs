@@ -13,6 +13,7 @@
 
 use crate::mean_test::judge_mean;
 use crate::moments::Moments;
+use crate::normal_test::normal_samples;
 use crate::reference::{Certainty, Reference, Scores};
 use crate::variance_test::judge_variance;
 use crate::verdict::{MeanTest, StandardErrorSource, Verdict};
@@ -50,6 +51,7 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
         sound: None,
         reason: "not testable: no samples".to_owned(),
         samples_needed: None,
+        normal_samples: f64::INFINITY,
         standard_error_source: StandardErrorSource::Sample,
         mean_test: MeanTest::NotTestable,
     };
@@ -78,6 +80,8 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
         .or_else(|| measured.standard_error())
         .filter(|&error| error > 0.0 && error.is_finite() && !is_noise(error))
         .map(|error| (mean - reference.mean) / error);
+
+    verdict.normal_samples = normal_samples(measured, reference, 0.5 * alpha);
 
     // The tests.
     let mean_judgement = judge_mean(measured, reference, mean, alpha);

@@ -77,6 +77,18 @@ mod tests {
     }
 
     #[test]
+    fn bounds_by_hand() {
+        // All ten samples below 0.475: D = 0.525.
+        let mut samples: Vec<f64> = (0..10).map(|i| (f64::from(i) + 0.5) / 20.0).collect();
+        let fit = kolmogorov_smirnov(&mut samples, identity, 1e-3);
+        let close = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-13, "{found}");
+        close(fit.statistic, 0.525);
+        close(fit.p_value_bound.unwrap(), 2.0 * (-20.0_f64 * 0.525 * 0.525).exp());
+        // Twice the bound of a distance at N = 10: for the false alarm and for the power.
+        close(fit.detectable.unwrap(), (2000.0_f64.ln() / 20.0).sqrt() + (200.0_f64.ln() / 20.0).sqrt());
+    }
+
+    #[test]
     fn the_level_is_held_under_the_null() {
         const RUNS: u64 = 400;
         let alpha = 0.05;

@@ -13,6 +13,7 @@ mod judge;
 mod mean_test;
 mod normal_test;
 mod policy;
+mod sample_size;
 mod variance_test;
 
 pub mod approximation;
@@ -41,7 +42,8 @@ pub use judge::judge;
 pub use kolmogorov_smirnov::kolmogorov_smirnov;
 pub use moments::Moments;
 pub use policy::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER};
-pub use reference::{Certainty, Reference, Scores};
+pub use reference::{Certainty, Reference, Scores, Tails};
+pub use sample_size::samples_needed;
 pub use verdict::{MeanTest, StandardErrorSource, Verdict};
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::moments::Moments;
 use crate::normal_test::{ZTest, z_test};
 use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome, POWER};
 use crate::reference::{Certainty, Reference, Scores};
+use crate::sample_size::{bernstein_law, bernstein_reach, least_sufficient};
 use crate::verdict::MeanTest;
 
 /// Judges the mean of n >= 1 samples. The level is alpha for two-valued samples, which have no other test, else alpha/2.
@@ -179,27 +180,12 @@ fn binomial(n: u64, successes: f64, reference: &Reference, high: f64, level: f64
 }
 
 /// What Bernstein's inequality needs to know of bounded samples.
-///
-/// Where the variance is unknown it is at most (maximum - mean)(mean - minimum) (Bhatia and Davis 2000), and a quarter of the square
-/// of their distance whatever the mean.
 #[derive(Clone, Copy)]
 struct Bounds(Bernstein);
 
 impl Bounds {
     fn of(reference: &Reference) -> Option<Self> {
-        let Scores::Bounded { minimum, maximum } = reference.scores else { return None };
-        let range = maximum - minimum;
-        if !range.is_finite() {
-            return None;
-        }
-        if matches!(reference.certainty, Certainty::Estimated { .. }) {
-            return Some(Self(Bernstein { variance: 0.25 * range * range, bound: range }));
-        }
-        let (below, above) = ((reference.mean - minimum).max(0.0), (maximum - reference.mean).max(0.0));
-        let greatest = below * above;
-        let closed = reference.closed_moments().and_then(|moments| moments.variance);
-        let variance = closed.map_or(greatest, |v| v.min(greatest));
-        Some(Self(Bernstein { variance, bound: below.max(above) }))
+        bernstein_law(reference).map(Self)
     }
 
     fn p_value(&self, reference: &Reference, mean: f64, n: f64) -> f64 {
@@ -208,13 +194,7 @@ impl Bounds {
 
     /// Its power, where the mean was not rejected.
     fn evidence(&self, reference: &Reference, mean: f64, n: f64, level: f64) -> MeanJudgement {
-        let law = self.0;
-        // A bias is seen if it exceeds the critical deviation by one that the mean makes with probability 1 - POWER only
-        // (one-sided, hence twice that as a two-sided level), at the same variance.
-        let detectable = |n: f64| {
-            let reach = law.deviation(level, n) + law.deviation(2.0 * (1.0 - POWER), n);
-            relative(reach + 2.0 * reference.allowance(), reference)
-        };
+        let detectable = |n: f64| relative(bernstein_reach(&self.0, reference, level, n), reference);
         let enough = |n: f64| detectable(n).is_some_and(|d| d < MAX_DETECTABLE_RELATIVE_BIAS);
         Evidence {
             test: MeanTest::Bernstein,
@@ -226,25 +206,4 @@ impl Bounds {
         }
         .decide()
     }
-}
-
-/// The least N, to a percent, from which on the monotone condition holds; infinite if it does not up to 1e300.
-fn least_sufficient(enough: impl Fn(f64) -> bool) -> f64 {
-    let mut high = 1.0;
-    while !enough(high) {
-        high *= 2.0;
-        if high > 1e300 {
-            return f64::INFINITY;
-        }
-    }
-    let mut low = 0.5 * high;
-    while high - low > 0.01 * high {
-        let middle = 0.5 * (low + high);
-        if enough(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high.ceil()
 }

@@ -5,7 +5,39 @@ use crate::evidence::{MeanJudgement, relative};
 use crate::moments::Moments;
 use crate::normal::upper_quantile;
 use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
-use crate::reference::Reference;
+use crate::reference::{Reference, Tails};
+use crate::sample_size::for_power;
+
+/// Skewness and excess kurtosis, and the N from which on they let a mean be taken as normal.
+struct Shape {
+    shape: Option<(f64, f64)>,
+    needed: f64,
+    origin: &'static str,
+}
+
+const OF_THE_LAW: &str = "of the law";
+
+impl Shape {
+    /// Of the law where all of it is known, else of the sample, under stricter limits.
+    fn of(measured: &Moments, reference: &Reference, test: &NormalApproximation) -> Self {
+        let closed =
+            reference.closed_moments().and_then(|moments| moments.skewness().zip(moments.excess_kurtosis()));
+        if let Some((skewness, kurtosis)) = closed {
+            let needed = test.samples_needed(skewness, kurtosis);
+            return Self { shape: closed, needed, origin: OF_THE_LAW };
+        }
+        let sample = measured.skewness().zip(measured.excess_kurtosis());
+        let needed = sample.map_or(f64::INFINITY, |(skewness, kurtosis)| {
+            test.studentised_samples_needed(skewness, kurtosis)
+        });
+        Self { shape: sample, needed, origin: if sample.is_some() { "of the sample" } else { "unknown" } }
+    }
+}
+
+/// The N from which on a normal approximation of the mean holds at `level`, by the shape of the law, or else of the sample.
+pub(crate) fn normal_samples(measured: &Moments, reference: &Reference, level: f64) -> f64 {
+    Shape::of(measured, reference, &NormalApproximation::for_level(level)).needed
+}
 
 /// A z-test for which N suffices.
 pub(crate) struct ZTest {
@@ -15,8 +47,8 @@ pub(crate) struct ZTest {
     pub(crate) detectable: Option<f64>,
     /// The N that its shape and its power ask for.
     pub(crate) samples_needed: f64,
-    /// Whether it may reject: variance and shape are those of the law, and no single sample makes up much of the deviation. A
-    /// sample's own are blind to what that sample lacks: they agree, and do not reject.
+    /// Whether it may reject: variance and shape are those of the law, or its tails are known to be mild, and no single sample makes up
+    /// much of the deviation. A sample's own are blind to what that sample lacks: otherwise they agree, and do not reject.
     pub(crate) may_reject: bool,
     /// What the standard error is, in words.
     pub(crate) name: &'static str,
@@ -41,30 +73,10 @@ pub(crate) fn z_test(
         return Err(not_testable(Some(f64::INFINITY), "the variance is infinite".to_owned()));
     }
 
-    // The shape: of the law where all of it is known, else of the sample, under stricter limits.
     let test = NormalApproximation::for_level(level);
-    let closed_shape = closed.and_then(|moments| moments.skewness().zip(moments.excess_kurtosis()));
-    let sample_shape = measured.skewness().zip(measured.excess_kurtosis());
-    let (shape, needed, origin) = match (closed_shape, sample_shape) {
-        (Some((skewness, kurtosis)), _) => {
-            (closed_shape, test.samples_needed(skewness, kurtosis), "of the law")
-        }
-        (None, Some((skewness, kurtosis))) => {
-            (sample_shape, test.studentised_samples_needed(skewness, kurtosis), "of the sample")
-        }
-        (None, None) => (None, f64::INFINITY, "unknown"),
-    };
-    // N for the power: (critical z + z of the power) sqrt(variance/N) + 2 allowance = half of the mean.
-    let reach = test.critical_z + upper_quantile(1.0 - POWER);
-    let room = MAX_DETECTABLE_RELATIVE_BIAS * reference.mean.abs() - 2.0 * reference.allowance();
-    let for_power = if reference.mean == 0.0 {
-        0.0
-    } else if room > 0.0 {
-        reach * reach * variance / room / room
-    } else {
-        f64::INFINITY
-    };
-    let samples_needed = needed.max(for_power);
+    let Shape { shape, needed, origin } = Shape::of(measured, reference, &test);
+    let closed_shape = shape.filter(|_| origin == OF_THE_LAW);
+    let samples_needed = needed.max(for_power(&test, reference, variance, MAX_DETECTABLE_RELATIVE_BIAS));
     if n < needed {
         let Some((skewness, kurtosis)) = shape else {
             return Err(not_testable(None, "the shape of the law is unknown".to_owned()));
@@ -84,7 +96,9 @@ pub(crate) fn z_test(
             ),
         ));
     }
+    let is_of_the_law = closed_variance.is_some() && closed_shape.is_some();
     let error = (variance / n).sqrt();
+    let reach = test.critical_z + upper_quantile(1.0 - POWER);
     let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
     let extremes = [measured.minimum(), measured.maximum()];
     let greatest =
@@ -93,9 +107,7 @@ pub(crate) fn z_test(
         p: NormalApproximation::p_value(deviation / error),
         detectable: relative(reach * error + 2.0 * reference.allowance(), reference),
         samples_needed,
-        may_reject: closed_variance.is_some()
-            && closed_shape.is_some()
-            && greatest <= MOST_OF_ONE * n * error,
+        may_reject: (is_of_the_law || reference.tails == Tails::Mild) && greatest <= MOST_OF_ONE * n * error,
         name: match (closed_variance.is_some(), closed_shape.is_some()) {
             (true, true) => "z with the closed-form standard error",
             (true, false) => "z with the closed-form standard error, shape from the sample",

@@ -50,6 +50,9 @@ pub struct Verdict {
     pub reason: String,
     /// Where `sound` is `None`: the N that would make the mean testable, possibly infinite; `None` if that is unknown.
     pub samples_needed: Option<f64>,
+    /// The N from which on a normal approximation of the mean holds at this level, by the shape of the law where that is known,
+    /// else of the sample; infinite for a shape that is neither. How near to it a run comes is how much another seed may change.
+    pub normal_samples: f64,
     /// Where the standard error of the mean comes from.
     pub standard_error_source: StandardErrorSource,
     /// How the mean was tested.

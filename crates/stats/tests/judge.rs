@@ -262,3 +262,15 @@ fn few_samples_are_not_testable() {
     let verdict = judge(&exponential(10, 1.0), &Reference::exact(f64::NAN), ALPHA);
     assert_eq!(verdict.sound, None);
 }
+
+#[test]
+fn mild_tails_let_a_sample_reject_by_its_own_error() {
+    // Ten values, equally often: the mean is 0.45.
+    let measured: Moments = (0..100_000).map(|i| f64::from(i % 10) / 10.0).collect();
+    let right = Reference::exact(0.45);
+    let wrong = Reference::exact(0.47);
+    assert_eq!(judge(&measured, &right, 1e-6).sound, Some(true));
+    assert_eq!(judge(&measured, &wrong, 1e-6).sound, None);
+    assert_eq!(judge(&measured, &right.with_mild_tails(), 1e-6).sound, Some(true));
+    assert_eq!(judge(&measured, &wrong.with_mild_tails(), 1e-6).sound, Some(false));
+}

@@ -133,28 +133,41 @@ pub struct Bidirectional;
 struct Point {
     s: f64,
     /// The product of 1 − σ_t/μ over the walk up to here.
-    weight: f64,
+    weight: SignedProduct,
     /// Σ exp(μ d) over the gaps d up to here.
     gaps: f64,
 }
 
 impl Point {
+    fn at(s: f64) -> Self {
+        Self { s, weight: SignedProduct::ONE, gaps: 0.0 }
+    }
+
     /// Goes on by a flight of the optical distance `depth` in the direction `sign`.
     #[inline]
     fn next<F: Majorant>(self, field: &F, depth: f64, sign: f64) -> Option<Self> {
         let s = self.s + sign * depth / field.majorant();
-        (0.0 < s && s < field.length()).then(|| Self {
-            s,
-            weight: self.weight * (1.0 - field.sigma_t(s) / field.majorant()),
-            gaps: self.gaps + depth.exp(),
+        (0.0 < s && s < field.length()).then(|| {
+            let mut weight = self.weight;
+            weight.multiply(1.0 - field.sigma_t(s) / field.majorant());
+            Self { s, weight, gaps: self.gaps + depth.exp() }
         })
     }
 
     /// The score of a walk that ends here, the last gap being from here to `end`.
     #[inline]
     fn whole(self, end: f64, majorant: f64) -> f64 {
-        self.weight / (2.0 + self.gaps + (majorant * (end - self.s).abs()).exp())
+        score(self.weight, self.gaps, majorant * (end - self.s).abs())
     }
+}
+
+/// weight/(2 + gaps + exp(μ d)), where `depth` = μ d may be beyond the exponential of a number.
+#[inline]
+fn score(weight: SignedProduct, gaps: f64, depth: f64) -> f64 {
+    if depth < 700.0 {
+        return weight.over(&SignedProduct::of(2.0 + (gaps + depth.exp())));
+    }
+    weight.times_exp(-depth - ((2.0 + gaps) * (-depth).exp()).ln_1p())
 }
 
 impl<F: Majorant> TransmittanceEstimator<F> for Bidirectional {
@@ -165,19 +178,19 @@ impl<F: Majorant> TransmittanceEstimator<F> for Bidirectional {
             return 1.0; // nothing is admitted but a vacuum
         }
         let mut backward: SmallVec<[Point; 128]> = SmallVec::new();
-        let mut point = Point { s: length, weight: 1.0, gaps: 0.0 };
+        let mut point = Point::at(length);
         backward.push(point);
         while let Some(next) = point.next(field, source.next_exponential(), -1.0) {
             point = next;
             backward.push(point);
         }
         let mut sum = point.whole(0.0, majorant);
-        point = Point { s: 0.0, weight: 1.0, gaps: 0.0 };
+        point = Point::at(0.0);
         loop {
             // Connections with all backward points that lie beyond.
             for other in backward.iter().take_while(|other| other.s > point.s) {
-                let gaps = point.gaps + other.gaps + (majorant * (other.s - point.s)).exp();
-                sum += point.weight * other.weight / (2.0 + gaps);
+                let weight = point.weight.times(&other.weight);
+                sum += score(weight, point.gaps + other.gaps, majorant * (other.s - point.s));
             }
             match point.next(field, source.next_exponential(), 1.0) {
                 Some(next) => point = next,
@@ -245,6 +258,17 @@ mod tests {
         let mut source = Scripted::new([2.75, 0.5, 0.5, 2.6].map(variate));
         let exact = path(1.0, &[3.0]) + 2.0 * path(0.5, &[0.25, 2.75]) + 2.0 * path(0.5, &[0.5, 2.5]);
         assert_relative_eq!(Bidirectional.estimate(&field, &mut source), exact, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn scores_of_long_walks_are_what_logarithms_say() {
+        // exp(900) over exp(1000) and gaps that do not show.
+        let weight = SignedProduct::exp(900.0);
+        assert_relative_eq!(score(weight, 50.0, 1000.0), (-100.0_f64).exp(), max_relative = 1e-12);
+        // On both sides of the border, where the gaps show.
+        let at = |depth: f64| score(SignedProduct::exp(650.0), depth.exp(), depth);
+        assert_relative_eq!(at(699.9), (-49.9_f64).exp() / 2.0, max_relative = 1e-12);
+        assert_relative_eq!(at(700.1), (-50.1_f64).exp() / 2.0, max_relative = 1e-12);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A control through explorer points: szirmay-kalos-2017 section 4 and fig. 5.
 
-use fairflight_media::{Breakpoints, Extinction, OpticalThickness};
+use fairflight_media::{Breakpoints, Extinction, OpticalThickness, lerp};
 
 /// The extinction interpolated linearly through `count` equidistant look-ups of the profile, both ends included.
 ///
@@ -105,7 +105,7 @@ impl Extinction for Explorers {
     #[inline]
     fn sigma_t(&self, s: f64) -> f64 {
         let (piece, t) = self.locate(s);
-        (1.0 - t) * self.values[piece] + t * self.values[piece + 1]
+        lerp(t, self.values[piece], self.values[piece + 1])
     }
     #[inline]
     fn length(&self) -> f64 {

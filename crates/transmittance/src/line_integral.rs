@@ -167,6 +167,10 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         }
         let n = f64::from(self.splits);
         let lookups = n * expected_lookups(quadrature, tolerance) / p_volume;
+        if optical_thickness - 3.0 * n.ln() > RARE {
+            let depth = quadrature.field().majorant() * quadrature.field().length();
+            return of_rare_escapes((optical_thickness, depth), p_volume / n, lookups);
+        }
         let cumulative = quadrature.cumulative(tolerance, |_, sigma_t| [sigma_t]);
         let field = quadrature.field();
         let total = cumulative.at(field.length())[0];
@@ -191,6 +195,27 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
             relative_variance_bound: f64::INFINITY,
             lookups,
         }
+    }
+}
+
+/// −ln 2^-53: escapes that are rarer are never two of one estimate, to rounding, and the quadrature over variates misses them.
+const RARE: f64 = 36.8;
+
+/// The law where an estimate has one escape at most, of `weight` = p_V/n, and hardly ever that: τ well above 3 ln n.
+///
+/// With ĝ_k = g_k/T the probabilities of escape, E\[Σ ĝ_k\] = m̂ = n (1 − exp(τ − μS))/p_V. All flights but the last start at u ≤ (n − 1)/n,
+/// where ĝ_k ≤ exp(μt) ≤ n, so that two escapes have the probability T² Σ_{k≠l} E\[ĝ_k ĝ_l\] ≤ 2n² m̂ T²: beside the m̂ T of one it is
+/// 2n² T, below rounding for τ − 3 ln n > 36.8, and so is the mean in (N − E\[N\])^k. Hence E\[(N − E)^k\]/T^k = m̂ exp((k − 1) τ).
+fn of_rare_escapes((tau, depth): (f64, f64), weight: f64, lookups: f64) -> Theory {
+    // m̂ weight = 1 − exp(τ − μS).
+    let log_escapes = (-(tau - depth).exp_m1()).max(0.0).ln() - weight.ln();
+    let log = |k: f64| k * weight.ln() + log_escapes + (k - 1.0) * tau;
+    Theory {
+        relative_mean: 1.0,
+        relative_central: std::array::from_fn(|i| log(i as f64 + 2.0).exp()),
+        log_relative_variance: log(2.0),
+        relative_variance_error: 0.0,
+        ..Theory::mean_only(lookups)
     }
 }
 
@@ -238,6 +263,29 @@ fn moments_about(centre: f64, cumulants: &[f64; HIGHEST_MOMENT]) -> [f64; HIGHES
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+
+    #[test]
+    fn rare_escapes_are_the_coins_that_they_are() {
+        // Both laws near the border between them, for a constant profile below a loose majorant.
+        for (splits, tau) in [(1, 37.5), (2, 39.0)] {
+            let field =
+                fairflight_media::Bounded::new(fairflight_media::Constant::new(tau, 1.0).unwrap(), 1.1 * tau);
+            let field = field.unwrap();
+            let estimator = LineIntegral::new(splits).unwrap();
+            let at =
+                |quadrature: &mut RayQuadrature<_>, tau| estimator.theory(quadrature, tau, Tolerance::TIGHT);
+            let rare = at(&mut RayQuadrature::new(field, &[]), tau);
+            // One flight is a coin: p_V (1 − exp(τ − μS)) exp(τ).
+            let coin = -(-0.1 * tau).exp_m1() * tau.exp() / f64::from(splits);
+            assert_relative_eq!(rare.relative_central[0], coin, max_relative = 1e-12);
+            assert_relative_eq!(rare.log_relative_variance, coin.ln(), max_relative = 1e-12);
+        }
+        let dense =
+            fairflight_media::Bounded::new(fairflight_media::Constant::new(4e4, 1.0).unwrap(), 5e4).unwrap();
+        let estimator = LineIntegral::new(4).unwrap();
+        let theory = estimator.theory(&mut RayQuadrature::new(dense, &[]), 4e4, Tolerance::TIGHT);
+        assert_relative_eq!(theory.log_relative_variance, 4e4 - 4.0_f64.ln(), max_relative = 1e-12);
+    }
 
     #[test]
     fn moments_of_coins_are_those_of_their_distribution() {

@@ -4,6 +4,7 @@ use crate::woodcock::expected_lookups;
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
+use std::cell::Cell;
 
 /// What a walk does where it collides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,19 +117,59 @@ impl<F: Majorant> ClosedForm<F> for NextFlight {
         let growth = |sigma_t: f64| if ratio { sigma_t * sigma_t / majorant } else { sigma_t };
         let ending = |sigma_t: f64| if ratio { 0.0 } else { sigma_t * (1.0 - sigma_t / majorant) };
         let total = quadrature.integrate(tolerance, |_, sigma_t| [growth(sigma_t)]).value[0];
+        let steepest = Cell::new(0.0_f64);
         let variance = quadrature.integrate_nested(
             tolerance,
             |_, sigma_t| [sigma_t, growth(sigma_t)],
             |s, sigma_t, [tau, grown]| {
                 let g = majorant * (length - s) - (optical_thickness - tau);
+                steepest.set(steepest.get().max(-g));
                 let jump = sigma_t - majorant * (-g).exp();
                 // In units of exp(A(S)), which may overflow.
                 [(grown - total).exp() * (jump * jump / majorant + ending(sigma_t))]
             },
         );
-        of_variance(total, variance.value[0], variance.error[0], lookups)
+        if steepest.get() < MOST_EXPONENT {
+            return of_variance(total, variance.value[0], variance.error[0], lookups);
+        }
+        // The greatest exponent of exp(A − 2g), and where: it is A(S) at the end.
+        let greatest = Cell::new((0.0_f64, length));
+        quadrature.integrate_nested(
+            Tolerance::to(0.1),
+            |_, sigma_t| [sigma_t, growth(sigma_t)],
+            |s, _, [tau, grown]| {
+                let g = majorant * (length - s) - (optical_thickness - tau);
+                let exponent = grown - total - 2.0 * g.min(0.0);
+                if exponent > greatest.get().0 {
+                    greatest.set((exponent, s));
+                }
+                [exponent]
+            },
+        );
+        // The integrand is a boundary layer there, of a width that no refinement would find by itself.
+        let (exponent, layer) = greatest.get();
+        let around = (1..=48).flat_map(|k| [-1.0, 1.0].map(|side| layer + side * length * 0.5_f64.powi(k)));
+        quadrature.split_at(&around.collect::<Vec<_>>());
+        let tolerance = Tolerance { absolute: 0.0, ..tolerance };
+        // σ_t far above μ: g < 0, and exp(A − 2g) is what has to be split off. μ exp(−g) − σ_t is then μ exp(−g) (1 − σ_t exp(g)/μ).
+        let scale = total + exponent;
+        let variance = quadrature.integrate_nested(
+            tolerance,
+            |_, sigma_t| [sigma_t, growth(sigma_t)],
+            |s, sigma_t, [tau, grown]| {
+                let g = majorant * (length - s) - (optical_thickness - tau);
+                let (below, above) = (g.min(0.0), g.max(0.0));
+                let jump = (-above).exp() - sigma_t / majorant * below.exp();
+                [(grown - scale - 2.0 * below).exp() * majorant * jump * jump
+                    + (grown - scale).exp() * ending(sigma_t)]
+            },
+        );
+        of_variance(scale, variance.value[0], variance.error[0], lookups)
     }
 }
+
+/// exp of twice this is still a number: beyond, the exponent is split off.
+const MOST_EXPONENT: f64 = 300.0;
 
 /// An unbiased estimate of which variance/T² = `variance` · exp(`scale`) and look-ups are known.
 pub(crate) fn of_variance(scale: f64, variance: f64, error: f64, lookups: f64) -> Theory {
@@ -174,7 +215,7 @@ mod tests {
         assert_eq!(source.remaining(), 0);
         // The first collision is survived at 0.25 or above, ended at below.
         let field = Bounded::new(Constant::new(0.5, 3.0).unwrap(), 2.0).unwrap();
-        let mut source = Scripted::new([variate(1.0), 0.25, variate(3.0), 0.2]);
+        let mut source = Scripted::new([variate(1.0), 0.25, variate(3.0), 0.25_f64.next_down()]);
         let exact = (-6.0_f64).exp() + (-5.0_f64).exp();
         assert_relative_eq!(DELTA.estimate(&field, &mut source), exact, max_relative = 1e-12);
     }
@@ -217,6 +258,20 @@ mod tests {
         let theory = theory_of(seed_ray(), &crate::Woodcock);
         assert_relative_eq!(theory.relative_central[0], 29.44, max_relative = 1e-3);
         assert_relative_eq!(theory.lookups, 5.21, max_relative = 1e-3);
+    }
+
+    /// By the closed form of the test above, its exponents in logarithms.
+    #[test]
+    fn the_variance_far_above_the_rate() {
+        let (sigma, rate, length) = (400.0_f64, 1.0, 3.0);
+        let field = Bounded::new(Constant::new(sigma, length).unwrap(), rate).unwrap();
+        let growth = 2.0 * sigma - sigma * sigma / rate;
+        // exp(−growth length) rules: (1 + μ/(2μ − r) − 2σ/(μ + σ − r)) exp(−r S), r = growth; beside it exp(2σS).
+        let factor = 1.0 + rate / (2.0 * rate - growth) - 2.0 * sigma / (rate + sigma - growth);
+        let exact = factor.ln() - growth * length + 2.0 * sigma * length;
+        let theory = theory_of(field, &RATIO);
+        assert_relative_eq!(theory.log_relative_variance, exact, max_relative = 1e-9);
+        assert_eq!(theory.relative_central[0], f64::INFINITY);
     }
 
     #[test]

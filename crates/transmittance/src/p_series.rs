@@ -53,7 +53,8 @@ pub enum PSeriesVersion {
 ///
 /// **Cost.** Σ_{k ≥ 1} P_k look-ups; t_c, a Poisson number, for `Ratio` and `NextFlight`; for `Cumulative` it has no closed form.
 ///
-/// **Orders** have no cap, and no term over- or underflows before the estimate does.
+/// **Orders** have no cap, and no term over- or underflows before the estimate does. **Digits** are another matter: with a pivot far below
+/// τ the terms grow to exp(τ) and cancel, so that a sum has lost its digits for τ − t_c above some 36, in any arithmetic of 53 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PSeries {
     version: PSeriesVersion,
@@ -122,10 +123,10 @@ fn surely_drawn(mean: f64) -> u32 {
     let mut sum = 0.0;
     let mut k = 0;
     loop {
-        sum += mass.over(&SignedProduct::ONE);
+        sum += mass.value();
         k += 1;
         // Rounding may leave the sum of a very large mean below the goal: the mass is then past its mode and gone.
-        if sum >= GOAL || (f64::from(k) > mean && mass.over(&SignedProduct::ONE) < 1e-18) {
+        if sum >= GOAL || (f64::from(k) > mean && mass.value() < 1e-18) {
             return k;
         }
         mass.multiply(mean / f64::from(k));
@@ -159,7 +160,7 @@ impl PSeries {
 
     fn cmf<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         let mut term = self.first;
-        let mut sum = term.over(&SignedProduct::ONE);
+        let mut sum = term;
         for k in 1_u32.. {
             let mut scale = 1.0 / f64::from(k);
             if k > self.sure {
@@ -170,14 +171,14 @@ impl PSeries {
                 scale /= go_on;
             }
             term.multiply((self.pivot - Self::point(field, source)) * scale);
-            sum += term.over(&SignedProduct::ONE);
+            sum.add(&term);
         }
-        sum
+        sum.value()
     }
 
     fn cumulative<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         let mut term = self.first;
-        let mut sum = term.over(&SignedProduct::ONE);
+        let mut sum = term;
         for k in 1_u32.. {
             term.multiply((self.pivot - Self::point(field, source)) / f64::from(k));
             let go_on = term.over(&self.first).abs();
@@ -187,9 +188,9 @@ impl PSeries {
                 }
                 term.multiply(1.0 / go_on);
             }
-            sum += term.over(&SignedProduct::ONE);
+            sum.add(&term);
         }
-        sum
+        sum.value()
     }
 
     fn ratio<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
@@ -197,7 +198,7 @@ impl PSeries {
         for _ in 0..poisson(self.pivot, source) {
             product.multiply(1.0 - Self::point(field, source) / self.pivot);
         }
-        product.over(&SignedProduct::ONE)
+        product.value()
     }
 
     /// With p_k the Poisson probabilities and h_k = p_k/P_k, term k is h_k Π_{i ≤ k} (1 − X_i/t_c): the sum is nested, and
@@ -206,12 +207,13 @@ impl PSeries {
     fn next_flight<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
         let last = poisson(self.pivot, source);
         let mut reciprocal = remainder(self.pivot, f64::from(last));
-        let mut sum = 1.0 / reciprocal;
+        let mut sum = SignedProduct::of(1.0 / reciprocal);
         for k in (1..=last).rev() {
             reciprocal = 1.0 + self.pivot / f64::from(k) * reciprocal;
-            sum = 1.0 / reciprocal + (1.0 - Self::point(field, source) / self.pivot) * sum;
+            sum.multiply(1.0 - Self::point(field, source) / self.pivot);
+            sum.add(&SignedProduct::of(1.0 / reciprocal));
         }
-        sum
+        sum.value()
     }
 }
 
@@ -343,7 +345,8 @@ impl<F: Extinction> ClosedForm<F> for PSeries {
                 let spread =
                     quadrature.integrate(tolerance, |_, sigma_t| [length * (sigma_t - mean).powi(2)]);
                 let (v, y) = (spread.value[0] + spread.error[0], pivot - optical_thickness);
-                // |Y| has kinks where Y vanishes: a rough integral and its error.
+                // |Y| has kinks where Y vanishes: split there, a rough integral and its error are enough.
+                quadrature.split_at_zeros(tolerance, &|_, sigma_t| pivot - length * sigma_t);
                 let of_magnitude = |_: f64, sigma_t: f64| [(pivot - length * sigma_t).abs() / length];
                 let magnitude = quadrature.integrate(Tolerance::to(1e-3), of_magnitude);
                 let most = (y * y + v).sqrt();

@@ -85,8 +85,19 @@ impl ProductLaw {
             let sign = if (n - k).is_multiple_of(2) { 1.0 } else { -1.0 };
             moment += sign * binomial(n, k) * exp_minus_linear(self.log_relative_moment(k));
         }
-        // ∞ − ∞: the highest power dominates, and it is infinite.
-        if moment.is_nan() { f64::INFINITY } else { moment }
+        if moment.is_nan() { self.infinite_central_moment(n) } else { moment }
+    }
+
+    /// ∞ − ∞: the term with the greatest exponent dominates, and says the sign; of an even moment there is only one.
+    fn infinite_central_moment(&self, n: usize) -> f64 {
+        let greatest =
+            (2..=n).max_by(|&a, &b| self.log_relative_moment(a).total_cmp(&self.log_relative_moment(b)));
+        let dominates = greatest.unwrap_or(n);
+        if n.is_multiple_of(2) || (n - dominates).is_multiple_of(2) {
+            f64::INFINITY
+        } else {
+            f64::NEG_INFINITY
+        }
     }
 
     /// The n-th central moment of a law with cumulants κ_j = J_j:
@@ -164,6 +175,17 @@ mod tests {
         assert_relative_eq!(central[0], 1e-10, max_relative = 1e-9);
         assert_relative_eq!(central[2], 3e-20 + 1e-22, max_relative = 1e-3);
         assert_relative_eq!(central[6], 105e-40, max_relative = 0.2);
+    }
+
+    #[test]
+    fn an_infinite_odd_moment_has_the_sign_of_its_greatest_term() {
+        // Every weight is −9: E[T^k]/T^k = exp(λ ((−9)^k − 1 + 10 k)), so that the even powers are greatest below an odd n.
+        let law = ProductLaw::new(std::array::from_fn(|i| (-10.0_f64).powi(i as i32 + 2)));
+        let central = law.relative_central();
+        assert_eq!([central[3], central[5]], [f64::NEG_INFINITY; 2]);
+        assert_eq!([central[4], central[6]], [f64::INFINITY; 2]);
+        // A coin of small T: the highest power.
+        assert_eq!(bernoulli(900.0).relative_central()[5], f64::INFINITY);
     }
 
     #[test]

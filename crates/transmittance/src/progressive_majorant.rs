@@ -1,5 +1,6 @@
 //! A majorant that is found while tracking (misso-2023). **Biased** at every moment, consistent in the long run, and labelled so.
 
+use crate::SignedProduct;
 use fairflight_media::{Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -59,18 +60,18 @@ impl ProgressiveMajorant {
     /// Draws one estimate with the guess as it is, and raises the guess where σ_t exceeds it.
     #[inline]
     pub fn estimate<F: Extinction, S: UniformSource + ?Sized>(&mut self, field: &F, source: &mut S) -> f64 {
-        let (mut weight, mut s) = (1.0, 0.0);
+        let (mut weight, mut s) = (SignedProduct::ONE, 0.0);
         loop {
             s += source.next_exponential() / self.majorant;
             if s >= field.length() {
-                return weight;
+                return weight.value();
             }
             let sigma_t = field.sigma_t(s);
             if sigma_t > self.majorant {
                 self.majorant = sigma_t;
                 return 0.0;
             }
-            weight *= 1.0 - sigma_t / self.majorant;
+            weight.multiply(1.0 - sigma_t / self.majorant);
         }
     }
 
@@ -80,6 +81,7 @@ impl ProgressiveMajorant {
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
     ) -> f64 {
+        quadrature.split_at_zeros(tolerance, &|_, sigma_t| sigma_t - self.majorant);
         let above = quadrature.integrate(tolerance, |_, sigma_t| [(sigma_t - self.majorant).max(0.0)]);
         above.value[0].exp_m1()
     }

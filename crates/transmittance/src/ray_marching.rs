@@ -3,6 +3,7 @@
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
 use fairflight_sources::UniformSource;
+use std::cell::Cell;
 
 /// Where in its step each look-up lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +88,17 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
         }
         let steps = lookups / field.length();
         let breaks: Vec<f64> = field.breakpoints().iter().map(|s| (s * steps).fract()).collect();
-        let mean = adaptive_integral(1.0, &breaks, tolerance, |offset| [relative(offset)]).value[0];
+        let greatest = Cell::new(f64::NEG_INFINITY);
+        let mean = adaptive_integral(1.0, &breaks, tolerance, |offset| {
+            let exponent = optical_thickness - self.thickness(field, offset);
+            greatest.set(greatest.get().max(exponent));
+            [exponent.exp()]
+        });
+        if greatest.get() > MOST_EXPONENT {
+            let exponent = |offset: f64| optical_thickness - self.thickness(field, offset);
+            return of_great_exponents((&breaks, tolerance), greatest.get(), &exponent, lookups);
+        }
+        let mean = mean.value[0];
         let central = adaptive_integral(1.0, &breaks, tolerance, |offset| -> [f64; HIGHEST_MOMENT - 1] {
             let deviation = relative(offset) - mean;
             std::array::from_fn(|i| deviation.powi(i as i32 + 2))
@@ -100,5 +111,49 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
             relative_variance_bound: f64::INFINITY,
             lookups,
         }
+    }
+}
+
+/// Beyond exp of this, estimates are taken in units of the greatest: their eighth powers would overflow, and soon they themselves.
+const MOST_EXPONENT: f64 = 80.0;
+
+/// Rounds in which a greater exponent may be found: each halves the panels around it.
+const MOST_ROUNDS: u32 = 60;
+
+/// The law of estimates exp(`exponent`(offset)) in units of T, of which `greatest` is the greatest exponent found so far.
+fn of_great_exponents(
+    (breaks, tolerance): (&[f64], Tolerance),
+    greatest: f64,
+    exponent: &dyn Fn(f64) -> f64,
+    lookups: f64,
+) -> Theory {
+    let tolerance = Tolerance { absolute: 0.0, ..tolerance };
+    let found = Cell::new(greatest);
+    let (mut greatest, mut mean) = (greatest, f64::NAN);
+    // Finer nodes may find greater ones: beyond 709 more they overflow, and are the new unit.
+    for _ in 0..MOST_ROUNDS {
+        greatest = found.get();
+        let integral = adaptive_integral(1.0, breaks, tolerance, |offset| {
+            let exponent = exponent(offset);
+            found.set(found.get().max(exponent));
+            [(exponent - greatest).exp()]
+        });
+        mean = integral.value[0];
+        if mean.is_finite() {
+            break;
+        }
+    }
+    let central = adaptive_integral(1.0, breaks, tolerance, |offset| -> [f64; HIGHEST_MOMENT - 1] {
+        let deviation = (exponent(offset) - greatest).exp() - mean;
+        std::array::from_fn(|i| deviation.powi(i as i32 + 2))
+    });
+    let log = |i: usize| central.value[i].abs().ln() + (i as f64 + 2.0) * greatest;
+    let moment = |i: usize| central.value[i].signum() * log(i).exp();
+    Theory {
+        relative_mean: (greatest + mean.ln()).exp(),
+        relative_central: std::array::from_fn(|i| if central.value[i] == 0.0 { 0.0 } else { moment(i) }),
+        log_relative_variance: log(0),
+        relative_variance_error: central.error[0] / central.value[0],
+        ..Theory::mean_only(lookups)
     }
 }

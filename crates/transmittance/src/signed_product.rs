@@ -1,10 +1,11 @@
-//! A product of very many factors, without under- or overflow.
+//! Products of very many factors and sums of such, without under- or overflow.
 
-/// A product kept as mantissa · 2^(128 · scale).
+/// A product, or a sum of products, kept as mantissa · 2^(128 · scale).
 ///
 /// A walk of a million collisions multiplies a million weights; as a plain double the product is 0 or infinite long before
 /// the control's transmittance brings it back. The usual cure, sign and logarithm, costs a logarithm per collision;
-/// here the exponent is split off only when the mantissa leaves \[2^-128, 2^128\], which is one comparison per collision.
+/// here the exponent is split off only when the mantissa leaves \[2^-128, 2^128\], which is one comparison per collision. Every operation
+/// rounds as that on plain doubles does where those neither over- nor underflow: the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignedProduct {
     mantissa: f64,
@@ -18,6 +19,15 @@ const SMALL: f64 = 1.0 / LARGE;
 impl SignedProduct {
     /// The empty product.
     pub const ONE: Self = Self { mantissa: 1.0, scale: 0 };
+
+    /// A number as it is.
+    #[inline]
+    #[must_use]
+    pub fn of(value: f64) -> Self {
+        let mut product = Self::ONE;
+        product.multiply(value);
+        product
+    }
 
     /// exp(`exponent`), also where that is no number of double precision.
     #[must_use]
@@ -42,17 +52,77 @@ impl SignedProduct {
         }
     }
 
-    /// Multiplies by a factor of magnitude below 2^895.
+    /// The number itself, rounded once: 0 or infinite only where it is beyond the range of double precision.
+    #[inline]
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.over(&Self::ONE)
+    }
+
+    /// Multiplies by a number.
     #[inline]
     pub fn multiply(&mut self, factor: f64) {
-        self.mantissa *= factor;
-        let magnitude = self.mantissa.abs();
-        if !(SMALL..=LARGE).contains(&magnitude) {
-            self.rescale();
+        let product = self.mantissa * factor;
+        if (SMALL..=LARGE).contains(&product.abs()) {
+            self.mantissa = product;
+        } else {
+            self.multiply_far(factor);
         }
     }
 
+    /// The product with another one.
+    #[inline]
+    #[must_use]
+    pub fn times(mut self, other: &Self) -> Self {
+        self.scale += other.scale;
+        self.multiply(other.mantissa);
+        self
+    }
+
+    /// Adds another one.
+    #[inline]
+    pub fn add(&mut self, other: &Self) {
+        let sum = self.mantissa + other.mantissa;
+        if self.scale == other.scale && (SMALL..=LARGE).contains(&sum.abs()) {
+            self.mantissa = sum;
+        } else {
+            self.add_far(other);
+        }
+    }
+
+    /// Where the mantissa leaves its range. A factor near either end of double precision is first brought to its middle, so that the
+    /// product of the two can neither over- nor underflow: all but that product are shifts of the exponent.
     #[cold]
+    fn multiply_far(&mut self, mut factor: f64) {
+        if factor.abs() > LARGE && factor.is_finite() {
+            factor *= SMALL;
+            self.scale += 1;
+        } else if factor != 0.0 && factor.abs() < SMALL {
+            factor *= LARGE;
+            self.scale -= 1;
+        }
+        self.mantissa *= factor;
+        self.rescale();
+    }
+
+    /// Where the scales differ, or the sum leaves the range of a mantissa. A summand 2^1280 below the other is far below its rounding.
+    #[cold]
+    fn add_far(&mut self, other: &Self) {
+        // A zero has no scale of its own.
+        if other.mantissa == 0.0 {
+            return;
+        }
+        if self.mantissa == 0.0 {
+            *self = *other;
+            return;
+        }
+        let (large, small) = if self.scale >= other.scale { (*self, *other) } else { (*other, *self) };
+        let apart = (large.scale - small.scale).min(10) as i32;
+        let shift = 2.0_f64.powi(-STEP / 2 * apart);
+        *self = Self { mantissa: large.mantissa + small.mantissa * shift * shift, scale: large.scale };
+        self.rescale();
+    }
+
     fn rescale(&mut self) {
         // A zero stays zero; NaN and infinity stay what they are, for the caller to find.
         while self.mantissa != 0.0 && self.mantissa.abs() < SMALL {
@@ -130,6 +200,51 @@ mod tests {
         }
         let large = SignedProduct::exp(5000.0);
         assert_eq!((large.over(&SignedProduct::ONE), SignedProduct::ONE.over(&large)), (f64::INFINITY, 0.0));
+    }
+
+    #[test]
+    fn any_number_is_a_factor() {
+        let ends = [f64::MAX, f64::MIN_POSITIVE, 5e-324, 1e200, -1e-200, -3.0, 0.7];
+        for a in ends {
+            assert_eq!(SignedProduct::of(a).value(), a);
+            for b in ends {
+                // Back to where it was, though a b is no number.
+                let mut product = SignedProduct::of(a);
+                product.multiply(b);
+                assert_eq!(product.sign(), (a * b.signum()).signum());
+                let [ln_a, ln_b] = [a, b].map(|x| x.abs().ln());
+                let rounding = 4.0 * f64::EPSILON * (1.0 + ln_a.abs() + ln_b.abs());
+                assert!((product.ln_abs() - ln_a - ln_b).abs() <= rounding, "{a:e} {b:e}");
+                let both = SignedProduct::of(a).times(&SignedProduct::of(b));
+                assert!((both.over(&product) - 1.0).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn sums_of_products_beyond_the_range_of_numbers() {
+        let (huge, tiny) = (SignedProduct::exp(5000.0), SignedProduct::exp(-5000.0));
+        let mut sum = huge;
+        sum.add(&tiny);
+        assert_eq!(sum, huge);
+        let mut sum = tiny;
+        sum.add(&huge);
+        assert_eq!(sum, huge);
+        // e^5000 twice, twice taken off, and what is added to nothing.
+        let mut sum = huge;
+        for factor in [1.0, -1.0, -1.0, 2.0_f64.powi(-40)] {
+            let mut term = huge;
+            term.multiply(factor);
+            sum.add(&term);
+        }
+        assert_eq!(sum.over(&huge), 2.0_f64.powi(-40));
+        // As plain numbers where those suffice.
+        let terms = [1e-30, 3.0, -2.9999, 1e20, 7.0, -1e20, 0.0];
+        let mut sum = SignedProduct::of(0.0);
+        terms.iter().for_each(|&term| sum.add(&SignedProduct::of(term)));
+        assert_eq!(sum.value(), terms.iter().sum::<f64>());
+        sum.add(&SignedProduct::of(f64::NAN));
+        assert!(sum.value().is_nan());
     }
 
     #[test]

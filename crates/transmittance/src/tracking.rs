@@ -7,7 +7,9 @@ use crate::{
     ClosedForm, Interaction, ProductLaw, SignedProduct, Theory, TransmittanceEstimator, TransmittanceFunction,
 };
 use fairflight_collision::CollisionModel;
-use fairflight_media::{Extinction, InvertOpticalThickness, OpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{
+    Extinction, InvertOpticalThickness, OpticalThickness, RayQuadrature, Tolerance, rounding_of_difference,
+};
 use fairflight_sources::UniformSource;
 
 /// Follows one particle through the profile and returns its weight at the end.
@@ -116,12 +118,16 @@ where
 
     #[inline]
     fn admits(&self, _field: &F, s: f64, sigma_t: f64) -> bool {
-        if self.sampling.sigma_t(s) > 0.0 {
-            return self.model.admits(self.ratio(s, sigma_t));
+        let (main, sampling) = (self.control.sigma_t(s), self.sampling.sigma_t(s));
+        let rounding = rounding_of_difference(sigma_t, main);
+        if sampling > 0.0 {
+            let ratio = self.ratio(s, sigma_t);
+            // A domain that ends where σ_t is the control, or at a multiple of σ_samp, holds what rounding carried over its end.
+            return self.model.admits(ratio)
+                || [-1.0, 1.0].iter().any(|side| self.model.admits(ratio + side * rounding / sampling));
         }
-        // No collision can happen here: right only if there is nothing to collide with, to the rounding of a difference.
-        let main = self.control.sigma_t(s);
-        (sigma_t - main).abs() <= 4.0 * f64::EPSILON * main.abs()
+        // No collision can happen here: right only if there is nothing to collide with.
+        (sigma_t - main).abs() <= rounding
     }
 }
 
@@ -162,6 +168,11 @@ where
             let sampling = self.sampling.sigma_t(s);
             (sampling > 0.0).then(|| (sampling, self.model.transmitted(self.ratio(s, sigma_t))))
         };
+        for kink in self.model.kinks() {
+            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
+                self.ratio_at(s, sigma_t).map_or(1.0, |ratio| ratio - kink)
+            });
+        }
         let collisions = quadrature.integrate(tolerance, |s, sigma_t| match at(s, sigma_t) {
             Some((sampling, transmitted)) => {
                 std::array::from_fn(|i| sampling * transmitted.moment_about_one(i as i32 + 2))

@@ -27,7 +27,10 @@ pub struct GridInfo {
     pub saved_as_half: bool,
     /// The grid whose tree this one shares, if it has none of its own. Such grids are not read.
     pub instance_of: Option<String>,
-    /// `fog volume`, `level set` or another class. The reader makes no difference between them.
+    /// The grid's class as the file spells it: `fog volume`, `level set`, ...; none where the file states none.
+    ///
+    /// Values of a level set are distances, those of a staggered grid sit on faces: neither is a volume, and
+    /// both are refused.
     pub class: Option<String>,
     /// The number of active voxels that the file states, tiles counted with their volume.
     pub file_voxel_count: Option<i64>,
@@ -140,24 +143,23 @@ impl Descriptor {
     }
 }
 
-/// The grid to be read: the one asked for, or the first that can be read.
+/// The name of the grid that is read where none is asked for.
+const USUAL_NAME: &str = "density";
+
+/// The grid to be read: the one asked for; else `density`; else the only float grid.
 pub(crate) fn select<'a>(grids: &'a [Descriptor], name: Option<&str>) -> Result<&'a Descriptor, VdbError> {
-    let Some(asked) = name else {
-        let readable = |grid: &&Descriptor| grid.is_float_tree() && grid.info.instance_of.is_none();
-        return grids.iter().find(readable).ok_or_else(|| {
-            let described = |grid: &Descriptor| format!("{} ({})", grid.info.name, grid.info.tree_type);
-            VdbError::NoFloatGrid { available: grids.iter().map(described).collect() }
-        });
+    let grid = match name {
+        // A full name is unique; a name without its number means the first grid of that name.
+        Some(asked) => grids
+            .iter()
+            .find(|grid| grid.info.name == asked)
+            .or_else(|| grids.iter().find(|grid| grid.plain_name == asked))
+            .ok_or_else(|| VdbError::NoSuchGrid {
+                asked: asked.to_owned(),
+                available: grids.iter().map(|grid| grid.info.name.clone()).collect(),
+            })?,
+        None => usual(grids)?,
     };
-    // A full name is unique; a name without its number means the first grid of that name.
-    let grid = grids
-        .iter()
-        .find(|grid| grid.info.name == asked)
-        .or_else(|| grids.iter().find(|grid| grid.plain_name == asked))
-        .ok_or_else(|| VdbError::NoSuchGrid {
-            asked: asked.to_owned(),
-            available: grids.iter().map(|grid| grid.info.name.clone()).collect(),
-        })?;
     let name = grid.info.name.clone();
     if !grid.is_float_tree() {
         return Err(VdbError::WrongType { grid: name, found: grid.info.tree_type.clone() });
@@ -166,7 +168,35 @@ pub(crate) fn select<'a>(grids: &'a [Descriptor], name: Option<&str>) -> Result<
         let what = format!("grid \"{name}\" has no tree of its own, it is an instance of \"{parent}\"");
         return Err(VdbError::Unsupported { what });
     }
-    Ok(grid)
+    match &grid.info.class {
+        Some(class) if is_no_volume(class) => Err(VdbError::NotAVolume { grid: name, class: class.clone() }),
+        _ => Ok(grid),
+    }
+}
+
+/// The grid that can be meant where none is asked for: of all float grids, whatever their trees and also where
+/// they are instances, the only one, or the only one that is called [`USUAL_NAME`].
+fn usual(grids: &[Descriptor]) -> Result<&Descriptor, VdbError> {
+    let floats: Vec<&Descriptor> =
+        grids.iter().filter(|grid| matches!(grid.info.value_type.as_str(), "float" | "double")).collect();
+    let densities: Vec<&Descriptor> =
+        floats.iter().copied().filter(|grid| grid.plain_name == USUAL_NAME).collect();
+    match (densities.as_slice(), floats.as_slice()) {
+        ([grid], _) | ([], [grid]) => Ok(grid),
+        ([], []) => {
+            let described = |grid: &Descriptor| format!("{} ({})", grid.info.name, grid.info.tree_type);
+            Err(VdbError::NoFloatGrid { available: grids.iter().map(described).collect() })
+        }
+        ([], several) | (several, _) => Err(VdbError::SeveralFloatGrids {
+            available: several.iter().map(|grid| grid.info.name.clone()).collect(),
+        }),
+    }
+}
+
+/// Whether the values of a grid of this class are no property of its voxels. OpenVDB compares classes trimmed
+/// and in lower case, and takes every other text for an unknown class.
+fn is_no_volume(class: &str) -> bool {
+    matches!(class.trim().to_lowercase().as_str(), "level set" | "staggered")
 }
 
 /// `density`, or `density[1]` for the second grid of that name.

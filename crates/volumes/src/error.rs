@@ -39,6 +39,20 @@ pub enum VdbError {
         /// All grids of the file as "name (tree type)".
         available: Vec<String>,
     },
+    /// No name was asked for, and which of several float grids is meant cannot be known.
+    #[error("several float grids, of which one must be named: the file has {}", list(available))]
+    SeveralFloatGrids {
+        /// The names that are possible.
+        available: Vec<String>,
+    },
+    /// The values of the grid are no property of its voxels: distances of a level set, say.
+    #[error("grid \"{grid}\" is a {class}, not a fog volume: its values are no densities")]
+    NotAVolume {
+        /// The grid's name.
+        grid: String,
+        /// Its class as the file spells it.
+        class: String,
+    },
     /// The grid asked for has other values than floats, or another tree than the usual 5-4-3.
     #[error("grid \"{grid}\" is a {found}, not a Tree_float_5_4_3")]
     WrongType {

@@ -19,14 +19,14 @@ pub fn grids(bytes: &[u8]) -> Result<Vec<GridInfo>, VdbError> {
     Ok(descriptors.into_iter().map(|descriptor| descriptor.info).collect())
 }
 
-/// Reads the float grid of the given name, or the first float grid of the file.
+/// Reads the float grid of the given name; without a name `density`, or else the only float grid of the file.
 ///
 /// Of several grids with one name, `density[1]` means the second and `density` the first.
 ///
 /// # Errors
-/// Everything that [`VdbError`] lists: the grid is missing, of another type, damaged, or uses a part of the format that is
-/// not supported. A grid whose number of active voxels is not the one in its metadata, or that has a value which is not
-/// finite, is an error too.
+/// Everything that [`VdbError`] lists: the grid is missing, ambiguous, of another type, a level set, damaged,
+/// or uses a part of the format that is not supported. A grid whose number of active voxels is not the one in
+/// its metadata, or that has a value which is not finite, is an error too.
 pub fn read_float_grid(bytes: &[u8], name: Option<&str>) -> Result<VoxelGrid, VdbError> {
     read_within(bytes, name, &mut Budget::for_file(bytes.len()))
 }

@@ -4,8 +4,10 @@ use crate::budget::Budget;
 use crate::error::VdbError;
 use crate::grid::{VoxelGrid, grids, read_within};
 
-/// The parts of a file with one grid, `density`, of root tiles only.
+/// The parts of a file with one grid of root tiles only.
 struct File {
+    name: &'static str,
+    class: Option<&'static str>,
     version: u32,
     has_offsets: u8,
     grid_count: u32,
@@ -20,6 +22,8 @@ struct File {
 impl File {
     fn new(tree: Vec<u8>) -> Self {
         Self {
+            name: "density",
+            class: None,
             version: 224,
             has_offsets: 1,
             grid_count: 1,
@@ -39,16 +43,26 @@ impl File {
         bytes.extend([b'0'; 36]);
         bytes.extend(0_u32.to_le_bytes());
         bytes.extend(self.grid_count.to_le_bytes());
-        for name in ["density", self.tree_type, self.parent] {
-            text(&mut bytes, name);
+        self.append_grid(&mut bytes);
+        bytes
+    }
+
+    /// Appends the grid with its descriptor.
+    fn append_grid(&self, bytes: &mut Vec<u8>) {
+        for name in [self.name, self.tree_type, self.parent] {
+            text(bytes, name);
         }
         let mut grid = self.compression.to_le_bytes().to_vec();
-        grid.extend((u32::from(self.half.is_some()) + u32::from(self.voxel_count.is_some())).to_le_bytes());
+        let entries = [self.half.is_some(), self.voxel_count.is_some(), self.class.is_some()];
+        grid.extend(entries.map(u32::from).iter().sum::<u32>().to_le_bytes());
         if let Some(half) = self.half {
             entry(&mut grid, "is_saved_as_half_float", "bool", &[u8::from(half)]);
         }
         if let Some(count) = self.voxel_count {
             entry(&mut grid, "file_voxel_count", "int64", &count.to_le_bytes());
+        }
+        if let Some(class) = self.class {
+            entry(&mut grid, "class", "string", class.as_bytes());
         }
         text(&mut grid, "TranslationMap");
         grid.extend([0; 24]);
@@ -59,7 +73,6 @@ impl File {
             bytes.extend((offset as u64).to_le_bytes());
         }
         bytes.extend(grid);
-        bytes
     }
 
     /// Reads the file, and asserts that reading took hardly more memory than the file has bytes.
@@ -163,6 +176,70 @@ fn root_slots_are_aligned_and_distinct() {
     assert!(File::new(tiles(&[ONE_TILE, ONE_TILE])).corruption().contains("the same place"));
 }
 
+/// The answer to whoever names no grid of a file with these.
+fn unasked(grids: &[File]) -> Result<String, VdbError> {
+    let first = File { grid_count: u32::try_from(grids.len()).expect("few"), ..File::new(Vec::new()) };
+    // The head of a file without its only grid.
+    let mut nothing = Vec::new();
+    first.append_grid(&mut nothing);
+    let mut bytes = first.bytes();
+    bytes.truncate(bytes.len() - nothing.len());
+    grids.iter().for_each(|grid| grid.append_grid(&mut bytes));
+    read_within(&bytes, None, &mut Budget::for_file(bytes.len())).map(|grid| grid.info().name.clone())
+}
+
+#[test]
+fn who_names_no_grid_gets_the_density_or_the_only_one() {
+    let float = |name| File { name, ..File::new(tiles(&[ONE_TILE])) };
+    let other = |name, tree_type| File { tree_type, ..float(name) };
+    let chosen = |grids: &[File]| unasked(grids).expect("there is no doubt");
+    assert_eq!(chosen(&[float("temperature"), float("density")]), "density");
+    assert_eq!(chosen(&[float("flames"), float("density"), float("heat")]), "density");
+    assert_eq!(chosen(&[other("density", "Tree_vec3s_5_4_3"), float("smoke")]), "smoke");
+    assert_eq!(chosen(&[other("v", "Tree_vec3s_5_4_3"), float("")]), "");
+    assert_eq!(
+        chosen(&[float("heat"), other("density", "Tree_float_5_4_3_HalfFloat")]),
+        "density",
+        "half floats are floats"
+    );
+
+    let several = |grids: &[File]| match unasked(grids) {
+        Err(VdbError::SeveralFloatGrids { available }) => available.join(" "),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(several(&[float("heat"), float("smoke")]), "heat smoke");
+    assert_eq!(
+        several(&[float("density\u{1e}0"), float("heat"), float("density\u{1e}1")]),
+        "density[0] density[1]"
+    );
+    let instance = |name| File { parent: "smoke", ..float(name) };
+    assert_eq!(several(&[float("smoke"), instance("haze")]), "smoke haze");
+
+    // What is called density and cannot be read is not passed over for another grid.
+    let double = other("density", "Tree_double_5_4_3");
+    assert!(matches!(unasked(&[float("heat"), double]), Err(VdbError::WrongType { .. })));
+    let shallow = other("density", "Tree_float_4_3");
+    assert!(matches!(unasked(&[float("heat"), shallow]), Err(VdbError::WrongType { .. })));
+    assert!(matches!(unasked(&[float("heat"), instance("density")]), Err(VdbError::Unsupported { .. })));
+    assert!(matches!(unasked(&[]), Err(VdbError::NoFloatGrid { .. })));
+}
+
+#[test]
+fn a_grid_whose_values_are_no_densities_is_refused_by_its_class() {
+    let of = |class| File { class: Some(class), ..File::new(tiles(&[ONE_TILE])) };
+    for class in ["level set", "Level Set", " level set ", "staggered"] {
+        let expected = VdbError::NotAVolume { grid: "density".to_owned(), class: class.to_owned() };
+        assert_eq!(of(class).read().err(), Some(expected), "{class}");
+        // Also who asks for it by name cannot mean its distances.
+        let bytes = of(class).bytes();
+        let asked = read_within(&bytes, Some("density"), &mut Budget::for_file(bytes.len()));
+        assert!(matches!(asked, Err(VdbError::NotAVolume { .. })), "{class}");
+    }
+    for class in ["fog volume", "unknown", "", "whatever"] {
+        assert!(of(class).read().is_ok(), "{class}");
+    }
+}
+
 #[test]
 fn the_grid_ends_where_its_offsets_say() {
     let mut tree = tiles(&[ONE_TILE]);
@@ -224,8 +301,8 @@ fn what_is_left_out_is_refused_by_name() {
 
     let instance = File { parent: "other", ..File::new(tree()) };
     assert!(
-        matches!(instance.read(), Err(VdbError::NoFloatGrid { .. })),
-        "an instance is not chosen unasked"
+        matches!(instance.read(), Err(VdbError::Unsupported { .. })),
+        "an instance of a density is not passed over for another grid"
     );
     let bytes = instance.bytes();
     let error =

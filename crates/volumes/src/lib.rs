@@ -17,9 +17,11 @@
 //! maps; several grids per file, also of one name.
 //!
 //! # What is refused, with a [`VdbError`] that says so
-//! Other value types and tree shapes, instanced grids, files written as a stream without offsets, camera frusta and singular
-//! maps, other codecs inside Blosc. Values that are not finite, because an extinction is. A grid whose active voxels are not
-//! as many as its metadata state.
+//! Several float grids of which none was named and none, or more than one, is called `density`. Level sets and
+//! staggered grids, by their class: their values are no densities. Other value types and tree shapes, instanced
+//! grids, files written as a stream without offsets, camera frusta and singular maps, other codecs inside
+//! Blosc. Values that are not finite, because an extinction is. A grid whose active voxels are not as many as
+//! its metadata state.
 //!
 //! # Files that cannot be trusted
 //! The reader opens nothing, and it neither panics nor loops without end on any bytes. Every size in the file is checked

@@ -80,6 +80,17 @@ fn grids_of_one_name_are_told_apart() {
 }
 
 #[test]
+fn of_many_grids_one_must_be_named() {
+    let error = read_float_grid(&fixture("codes.vdb"), None).expect_err("none is called density");
+    let message = error.to_string();
+    assert!(
+        message.starts_with("several float grids, of which one must be named: the file has "),
+        "{message}"
+    );
+    assert!(message.contains("tiles") && message.contains("twin[0], twin[1]"), "{message}");
+}
+
+#[test]
 fn a_grid_without_its_own_tree_is_refused() {
     let error = read_float_grid(&fixture("codes.vdb"), Some("instance")).expect_err("an instance");
     let message = "not supported: grid \"instance\" has no tree of its own, it is an instance of \"twin[0]\"";

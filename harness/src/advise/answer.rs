@@ -26,6 +26,9 @@ pub(super) struct Answer {
     expected: Vec<Contestant>,
     /// Where the numbers come from.
     provenance: Provenance,
+    /// Rays whose reference is not certified: told to a person.
+    #[serde(skip)]
+    uncertified: usize,
 }
 
 /// A measured estimator.
@@ -143,13 +146,14 @@ impl Answer {
             measured,
             expected,
             provenance,
+            uncertified: set.rays.iter().filter(|ray| ray.truth.doubt.is_some()).count(),
         }
     }
 
     /// The answer for a person.
     pub(super) fn table(&self) -> String {
         let mut table = format!(
-            "{}: {} rays, majorant {:.4}, mean extinction {:.4}\nuse {} (per look-up), {} (per second on this machine)\n\n{:<34}{:>9}{:>12}{:>30}{:>12}{:>30}\n",
+            "advice for transmittance along rays, not for pictures\n{}: {} rays, majorant {:.4}, mean extinction {:.4}\nuse {} (per look-up), {} (per second on this machine)\n\n{:<34}{:>9}{:>12}{:>30}{:>12}{:>30}\n",
             self.medium,
             self.rays,
             self.majorant,
@@ -178,6 +182,12 @@ impl Answer {
             ));
         }
         table.push_str("\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n");
+        if self.uncertified > 0 {
+            let (count, rays) = (self.uncertified, self.rays);
+            table.push_str(&format!(
+                "the transmittance of {count} of {rays} rays is not certified: features of sigma_t may have been missed there\n"
+            ));
+        }
         table
     }
 }

@@ -8,6 +8,7 @@ mod forecast;
 mod question;
 mod trial;
 
+use crate::budget::Budget;
 use crate::cli::AdviseArguments;
 use crate::{DONE, Environment, Failure};
 use std::io::{Read, Write};
@@ -20,9 +21,14 @@ pub(crate) fn run(
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
     let question = question::Question::of(arguments, stdin)?;
-    let answer = environment
-        .on_threads(arguments.threads, || trial::answer(&question, arguments.seed, environment))?;
+    let budget = Budget::of(arguments.budget);
+    let (rays, warning) = environment.on_threads(arguments.threads, || trial::rays(&question, budget))?;
     // A person who does not see this has the JSON all the same.
+    if let Some(warning) = warning {
+        let _ = writeln!(stderr, "warning: {warning}");
+    }
+    let answer = environment
+        .on_threads(arguments.threads, || trial::answer(&question, &rays, arguments.seed, environment))?;
     let _ = write!(stderr, "{}", answer.table());
     let json = serde_json::to_string_pretty(&answer)
         .map_err(|error| Failure::refused(format!("the answer: {error}")))?;

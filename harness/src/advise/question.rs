@@ -5,7 +5,8 @@ use crate::cli::AdviseArguments;
 use crate::comparison::{RaySet, chords};
 use crate::estimate::{named, read};
 use crate::plan::{AnyMedium, AnyProfile, MediumLibrary};
-use crate::spec::{MediumKind, MediumSpec, Node, SceneOverrides, SceneSpec};
+use crate::report::document::Volume;
+use crate::spec::{IntegratorSpec, MediumSpec, Node, SceneOverrides, SceneSpec, VolumeSpec};
 use fairflight_media::{Bounds, Tolerance};
 use fairflight_scene::Camera;
 use fairflight_sources::{Seeded, UniformSource, derive_seed};
@@ -19,6 +20,10 @@ const TOLERANCE: f64 = 1e-7;
 /// Camera rays that are tried for one that meets the medium.
 const TRIES: usize = 200;
 
+/// What a scene is told that is not taken.
+const ALTERNATIVES: &str = "what a picture costs is not measured; advice is given for transmittance along rays: of --vdb FILE, or of \
+    MEDIUM.json, which holds a medium as in an experiment";
+
 /// A medium and how its rays are chosen.
 pub(super) struct Question {
     /// What it is called in the answer.
@@ -31,6 +36,23 @@ pub(super) struct Question {
     majorant: Option<f64>,
 }
 
+/// Whether the picture of a scene is the background, attenuated: then estimates of transmittance along camera
+/// rays are all that it costs.
+///
+/// # Errors
+/// If light is scattered, or may be.
+fn made_of_transmittance(scene: &SceneSpec, volume: &VolumeSpec) -> Result<(), Failure> {
+    if volume.albedo.rgb().iter().any(|albedo| *albedo > 0.0) {
+        return Err(Failure::refused(format!(
+            "medium.albedo: this scene scatters light, and {ALTERNATIVES}"
+        )));
+    }
+    match scene.integrator {
+        IntegratorSpec::Transmittance { .. } => Ok(()),
+        _ => Err(Failure::refused(format!("integrator.kind: is not transmittance, and {ALTERNATIVES}"))),
+    }
+}
+
 impl Question {
     pub(super) fn of(arguments: &AdviseArguments, stdin: &mut dyn Read) -> Result<Self, Failure> {
         let library = MediumLibrary::default();
@@ -40,12 +62,11 @@ impl Question {
             Ok(Self { name, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
         };
         if let Some(file) = &arguments.vdb {
-            let kind =
-                MediumKind::Vdb { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
-            return question(file.display().to_string(), &MediumSpec { kind, bounds: None }, None);
+            let volume = Volume { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
+            return question(file.display().to_string(), &volume.medium(), None);
         }
         let Some(file) = &arguments.medium else {
-            return Err(Failure::refused("advise: give MEDIUM.json, a scene, or --vdb FILE"));
+            return Err(Failure::refused("advise: give MEDIUM.json or --vdb FILE"));
         };
         let name = named(file);
         let in_file = |failure: Failure| failure.within(&name);
@@ -55,9 +76,10 @@ impl Question {
         if value.get("camera").is_some() {
             let overrides = SceneOverrides { samples_per_pixel: Some(1), seed: Some(arguments.seed) };
             let scene = SceneSpec::parse(&text, overrides).map_err(in_file)?;
-            let volume = scene.medium.ok_or_else(|| {
+            let volume = scene.medium.as_ref().ok_or_else(|| {
                 in_file(Failure::refused("medium: this scene has none, there is nothing to estimate"))
             })?;
+            made_of_transmittance(&scene, volume).map_err(in_file)?;
             return question(name.clone(), &volume.medium, Some(scene.camera));
         }
         let spec = MediumSpec::read(&Node::root(&value)).map_err(in_file)?;

@@ -3,10 +3,12 @@
 use super::answer::{Advice, Answer, Contestant, How};
 use super::forecast::Signs;
 use super::question::Question;
-use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, Unit, entrants, facts, fight, gain};
+use crate::budget::{Budget, patience, seconds_per_lookup};
+use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, TestRay, Unit, entrants, facts, fight, gain};
 use crate::plan::pilot;
 use crate::{Environment, Failure};
 use fairflight_sources::derive_seed;
+use fairflight_transmittance::Pilot;
 use rayon::prelude::*;
 
 /// Estimates per ray of a trial, and of a measurement.
@@ -24,9 +26,38 @@ struct Expected {
     how: How,
 }
 
-pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) -> Result<Answer, Failure> {
+/// Rays of a question that may be answered within a budget, and a warning where that takes long.
+///
+/// # Errors
+/// If they cannot be integrated, or would take too many look-ups.
+pub(super) fn rays(question: &Question, budget: Budget) -> Result<(RaySet, Option<String>), Failure> {
     let set = question.rays()?;
-    let facts = facts(&set, derive_seed(seed, 2));
+    let (rays, depth) = (set.rays.len() as f64, set.depth());
+    // A trial of each and a measurement of the best, drawn and counted; pilots make a few dozen look-ups per
+    // unit of depth.
+    let estimates = |effort: Effort| (effort.samples + effort.counted) as f64;
+    let trial = estimates(TRIAL) * (TRIAL_RAYS as f64 / rays).min(1.0);
+    let measured = (BEST + 1) as f64 * estimates(MEASUREMENT);
+    let pilot = |ray: &TestRay| Pilot::lookups(ray.majorant * ray.profile.length()) as f64;
+    let lookups = depth * (entrants().len() as f64 * trial + measured)
+        + set.pairs() * trial
+        + 2.0 * set.rays.iter().map(pilot).sum::<f64>();
+    let because = format!(
+        "{rays} rays, in the majorant {:e} of an optical thickness of {depth:.3e} together",
+        set.rays[0].majorant
+    );
+    budget.check(&format!("{}: medium", question.name), lookups, &because)?;
+    let warning = patience(lookups, seconds_per_lookup(&set.rays[0].profile));
+    Ok((set, warning))
+}
+
+pub(super) fn answer(
+    question: &Question,
+    set: &RaySet,
+    seed: u64,
+    environment: &Environment,
+) -> Result<Answer, Failure> {
+    let facts = facts(set, derive_seed(seed, 2));
     let signs: Vec<Signs> = set
         .rays
         .par_iter()
@@ -43,7 +74,7 @@ pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) 
         if entrant.needs_cells && entrant.on(&set.rays[0], &facts[0]).is_err() {
             continue;
         }
-        expected.push(expect(entrant, &set, &facts, &signs, derive_seed(derive_seed(seed, 4), e as u64))?);
+        expected.push(expect(entrant, set, &facts, &signs, derive_seed(derive_seed(seed, 4), e as u64))?);
         progress.inc(1);
     }
     expected.sort_by(|a, b| a.log_price.total_cmp(&b.log_price));
@@ -56,7 +87,7 @@ pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) 
     let mut measured: Vec<(Entrant, Vec<Bout>)> = Vec::new();
     for (e, expected) in chosen.into_iter().enumerate() {
         let seed = derive_seed(derive_seed(seed, 5), e as u64);
-        measured.push((expected.entrant, measure(expected.entrant, &set, &facts, MEASUREMENT, seed)?));
+        measured.push((expected.entrant, measure(expected.entrant, set, &facts, MEASUREMENT, seed)?));
         progress.inc(1);
     }
     progress.finish_and_clear();
@@ -65,12 +96,12 @@ pub(super) fn answer(question: &Question, seed: u64, environment: &Environment) 
         .iter()
         .filter_map(|(entrant, bouts)| {
             let of = |unit| gain(bouts, &baseline, unit, derive_seed(seed, 6));
-            Some(Advice::of(entrant, bouts, (of(Unit::Lookups)?, of(Unit::Seconds)?), &set, &facts))
+            Some(Advice::of(entrant, bouts, (of(Unit::Lookups)?, of(Unit::Seconds)?), set, &facts))
         })
         .collect();
     advice.sort_by(|a, b| b.gain_per_lookup.value.total_cmp(&a.gain_per_lookup.value));
     let contestants = expected.iter().map(|e| Contestant::of(e.entrant.name, e.log_price, e.how)).collect();
-    Ok(Answer::new(&question.name, &set, advice, contestants, environment.provenance(seed)))
+    Ok(Answer::new(&question.name, set, advice, contestants, environment.provenance(seed)))
 }
 
 /// A forecast on every ray, or a trial on some.

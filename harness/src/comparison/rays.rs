@@ -1,8 +1,8 @@
 //! Rays to compare estimators on.
 
-use crate::Failure;
 use crate::plan::{AnyMedium, AnyProfile};
 use crate::reference::Truth;
+use crate::{Failure, interrupt};
 use fairflight_media::{Bounds, Tolerance};
 use fairflight_sources::{Seeded, UniformSource};
 use glam::DVec3;
@@ -31,6 +31,23 @@ pub struct RaySet {
 }
 
 impl RaySet {
+    /// The optical thickness of the majorant, summed over the rays, each counted as 1 at least: what an
+    /// estimate on each of them looks up, to a small factor.
+    #[must_use]
+    pub fn depth(&self) -> f64 {
+        self.depths().map(|depth| depth.max(1.0)).sum()
+    }
+
+    /// The pairs of points that a bidirectional estimate on each ray connects.
+    #[must_use]
+    pub fn pairs(&self) -> f64 {
+        self.depths().map(|depth| 0.5 * depth * depth).sum()
+    }
+
+    fn depths(&self) -> impl Iterator<Item = f64> {
+        self.rays.iter().map(|ray| ray.majorant * ray.profile.length())
+    }
+
     /// The set of these profiles, all of them below `majorant`. Rays that meet practically nothing (∫σ_t²/majorant below a
     /// thousandth) are left out: there is nothing to compare on them.
     ///
@@ -46,6 +63,7 @@ impl RaySet {
         let rays: Result<Vec<TestRay>, Failure> = profiles
             .into_par_iter()
             .map(|profile| {
+                interrupt::check()?;
                 let truth = Truth::of(&profile, tolerance)?;
                 Ok(TestRay { profile, truth, majorant })
             })

@@ -12,7 +12,7 @@ mod hostile;
 mod pfm;
 mod png;
 
-pub use self::png::Exposure;
+pub use self::png::{Exposure, luminance};
 
 use crate::Failure;
 use std::path::Path;
@@ -109,15 +109,25 @@ impl Image {
     /// number that is not finite. The file is named.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let named = |error: &dyn std::fmt::Display| Failure::refused(format!("{}: {error}", path.display()));
-        let decode = match Format::of(path) {
-            Some(Format::Pfm) => pfm::decode,
-            Some(Format::Exr) => exr::decode,
-            Some(Format::Png) | None => {
-                return Err(named(&"an image is read from a file that ends in .pfm or .exr"));
-            }
+        let Some(format @ (Format::Pfm | Format::Exr)) = Format::of(path) else {
+            return Err(named(&"an image is read from a file that ends in .pfm or .exr"));
         };
         let bytes = std::fs::read(path).map_err(|error| named(&error))?;
-        decode(&bytes).and_then(Self::finite).map_err(|error| named(&error))
+        Self::decode(&bytes, format).and_then(Self::finite).map_err(|error| named(&error))
+    }
+
+    /// The image in the bytes of a file of `format`, with whatever numbers it holds.
+    ///
+    /// # Errors
+    /// If they are no such file, or the format is only written.
+    pub fn decode(bytes: &[u8], format: Format) -> Result<Self, ImageError> {
+        match format {
+            Format::Pfm => pfm::decode(bytes),
+            Format::Exr => exr::decode(bytes),
+            Format::Png => {
+                Err(ImageError::Malformed { format: "PNG", reason: "it is written only".to_owned() })
+            }
+        }
     }
 
     fn finite(self) -> Result<Self, ImageError> {
@@ -130,7 +140,7 @@ impl Image {
         }
     }
 
-    /// The bytes of this image as a file of `format`.
+    /// The bytes of this image as a file of `format`; what is tone-mapped is shown as it is, at an exposure of 1.
     ///
     /// # Errors
     /// If the format's writer fails.
@@ -138,8 +148,16 @@ impl Image {
         match format {
             Format::Pfm => Ok(pfm::encode(self)),
             Format::Exr => exr::encode(self),
-            Format::Png => png::encode(self, Exposure::of(self)),
+            Format::Png => self.tone_mapped(Exposure::default()),
         }
+    }
+
+    /// The bytes of this image as a `.png` file, shown at this exposure.
+    ///
+    /// # Errors
+    /// If the format's writer fails.
+    pub fn tone_mapped(&self, exposure: Exposure) -> Result<Vec<u8>, String> {
+        png::encode(self, exposure)
     }
 }
 

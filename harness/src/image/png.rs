@@ -6,18 +6,18 @@ use super::Image;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure(f64);
 
-/// Of the pixels, this part may be brighter than white.
-const WHITE: f64 = 0.995;
+impl Default for Exposure {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
 
 impl Exposure {
-    /// The power of two that shows the 99.5th percentile of luminance at white or less than one stop below: the same for
-    /// all images of a scene but for noise at a boundary. It is 1 for an image without light.
+    /// The power of two that shows the luminance `white` at white or less than one stop below: 1 where there is
+    /// no light.
     #[must_use]
-    pub fn of(image: &Image) -> Self {
-        let mut luminance: Vec<f64> = image.pixels.iter().map(luminance).collect();
-        let rank = ((luminance.len() as f64 * WHITE) as usize).min(luminance.len() - 1);
-        let (_, &mut white, _) = luminance.select_nth_unstable_by(rank, f64::total_cmp);
-        if white > 0.0 && white.is_finite() { Self((-white.log2().ceil()).exp2()) } else { Self(1.0) }
+    pub fn of_white(white: f64) -> Self {
+        if white > 0.0 && white.is_finite() { Self((-white.log2().ceil()).exp2()) } else { Self::default() }
     }
 }
 
@@ -28,8 +28,9 @@ impl std::fmt::Display for Exposure {
 }
 
 /// Luminance of linear Rec. 709 primaries.
-fn luminance(&[r, g, b]: &[f32; 3]) -> f64 {
-    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+#[must_use]
+pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// IEC 61966-2-1, of a number in \[0, 1\].
@@ -65,7 +66,7 @@ mod tests {
     #[test]
     fn the_file_says_how_it_was_mapped() {
         let image = Image::new(2, 2, vec![[0.0; 3], [4.0, 2.0, -1.0], [4.0; 3], [4.0; 3]]);
-        let exposure = Exposure::of(&image);
+        let exposure = Exposure::of_white(4.0);
         assert_eq!(exposure, Exposure(0.25));
         let bytes = encode(&image, exposure).unwrap();
         let mut reader = ::png::Decoder::new(bytes.as_slice()).read_info().unwrap();
@@ -80,8 +81,10 @@ mod tests {
 
     #[test]
     fn exposure_is_a_power_of_two_and_total() {
-        let of = |value: f32| Exposure::of(&Image::new(1, 1, vec![[value; 3]])).0;
-        assert_eq!([of(0.0), of(-3.0), of(f32::MIN_POSITIVE)], [1.0, 1.0, 2_f64.powi(126)]);
-        assert_eq!([of(0.3), of(0.6), of(2.1)], [2.0, 1.0, 0.25]);
+        let of = |white: f64| Exposure::of_white(white).0;
+        assert_eq!([0.0, -3.0, f64::NAN, f64::INFINITY].map(of), [1.0; 4]);
+        assert_eq!([0.3, 0.6, 2.1, f64::from(f32::MIN_POSITIVE)].map(of), [2.0, 1.0, 0.25, 2_f64.powi(126)]);
+        let grey = luminance([0.7; 3]);
+        assert!((grey - 0.7).abs() < 1e-15, "{grey}");
     }
 }

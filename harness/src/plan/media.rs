@@ -2,7 +2,7 @@
 
 use super::VoxelLattice;
 use crate::Failure;
-use crate::spec::{MediumKind, MediumSpec};
+use crate::spec::{MediumKind, MediumSpec, NegativeVoxels};
 use fairflight_media::{
     AnalyticCosine, Bounds, EmptySpace, ExpressionMedium, FieldError, Homogeneous, LineThickness, Medium,
     Perlin, Voxels,
@@ -126,8 +126,17 @@ impl MediumLibrary {
                     .map_err(|error| Failure::refused(format!("{key}.sigma_t: {error}")))?;
                 (AnyMedium::Expression(Arc::new(medium)), given.ok_or_else(unbounded)?)
             }
-            MediumKind::Vdb { file, grid, scale } => {
+            MediumKind::Vdb { file, grid, scale, negative } => {
                 let (medium, bounds) = self.volume(file, grid.as_deref(), *scale, key)?;
+                let least = medium.lattice().0.minimum();
+                if least < 0.0 && *negative == NegativeVoxels::Refused {
+                    return Err(Failure::refused(format!(
+                        "{key}.file: {}: grid \"{}\" has values down to {least}, which no density has; \
+                         \"allow_negative\": true in a medium of kind vdb takes them for negative extinctions",
+                        file.display(),
+                        medium.lattice().0.info().name
+                    )));
+                }
                 (AnyMedium::Voxels(medium), given.unwrap_or(bounds))
             }
         })

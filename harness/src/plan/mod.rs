@@ -21,6 +21,7 @@ mod surfaces;
 mod transport;
 mod voxel_lattice;
 mod walk;
+mod work;
 
 pub use beyond::{Beyond, pilot};
 pub use control::AnyControl;
@@ -37,6 +38,7 @@ pub use single_scattering::SingleScatteringPlan;
 pub use transport::{PathTracerPlan, Stage, TransportPlan, VplPlan};
 pub use voxel_lattice::VoxelLattice;
 pub use walk::{SpaceSampling, WalkPlan};
+pub use work::{Expected, RayKnown, Work};
 
 use crate::Failure;
 use crate::measure::MOST_COUNTED;

@@ -3,10 +3,10 @@
 use super::canvas::{Canvas, Spent};
 use super::tile::{AddSamples, Tile};
 use super::virtual_lights::Batch;
-use crate::Failure;
 use crate::plan::{
     AnyPhase, IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, Stage, TileIntegrator, Unlawful,
 };
+use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::{LineThickness, Medium, Observed};
 use fairflight_scene::{Spectrum, Volume};
@@ -277,7 +277,9 @@ impl<C: Spectrum> Draw<'_, C> {
                     return None;
                 }
                 let area = drawn.area;
-                let done = tile(drawn).map_err(|failure| failure.within(area.name()));
+                let done = interrupt::check()
+                    .and_then(|()| tile(drawn))
+                    .map_err(|failure| failure.within(area.name()));
                 if done.is_err() {
                     first_failure.fetch_min(i, Ordering::Relaxed);
                 }

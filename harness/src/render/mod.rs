@@ -10,25 +10,30 @@ mod output;
 mod painting;
 mod passes;
 mod photons;
+mod pilot;
 mod pixel;
 mod statistics;
 mod tile;
 mod virtual_lights;
 mod warnings;
+mod work;
 
+use crate::budget::Budget;
 use crate::cli::RenderArguments;
 use crate::estimate::{named, read};
 use crate::image::{Exposure, Image};
-use crate::interrupt::{INTERRUPTED, stop_gently};
+use crate::interrupt::stop_gently;
 use crate::plan::{IntegratorPlan, MediumLibrary, ScenePlan, Spectra};
 use crate::spec::{SceneOverrides, SceneSpec};
-use crate::{DONE, Environment, Failure};
+use crate::{DONE, Environment, Failure, INTERRUPTED};
 use output::Outputs;
 pub(crate) use painting::{Painting, moments};
 use passes::{EarlyEnd, End, Painted, Rhythm, paint};
 pub(crate) use statistics::Moments;
 use statistics::Statistics;
+
 use std::io::{Read, Write};
+use std::sync::OnceLock;
 
 /// The least time between two unfinished images in files \[s\].
 const FILES_EVERY: f64 = 2.0;
@@ -47,31 +52,41 @@ pub(crate) fn run(
     let text = read(&arguments.scene, stdin).map_err(in_scene)?;
     let overrides = SceneOverrides { samples_per_pixel: arguments.samples_per_pixel, seed: arguments.seed };
     let spec = SceneSpec::parse(&text, overrides).map_err(in_scene)?;
-    let plan = ScenePlan::of(&spec, &MediumLibrary::default()).map_err(in_scene)?;
+    let library = MediumLibrary::default();
+    let plan = ScenePlan::of(&spec, &library).map_err(in_scene)?;
     if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {
         return Err(Failure::refused(
             "--time-limit: photons come in replicas of the whole image, not in passes",
         ));
     }
+    let length = if arguments.time_limit.is_some() { work::Length::Limited } else { work::Length::Whole };
+    let bounds = (Budget::of(arguments.budget), length);
+    let warning = environment
+        .on_threads(arguments.threads, || work::check(&spec, &plan, &library, bounds))
+        .map_err(in_scene)?;
+    // Nobody is left to tell if standard error is closed.
+    if let Some(warning) = warning {
+        let _ = writeln!(stderr, "warning: {warning}");
+    }
     let in_passes = arguments.time_limit.is_some() || plan.integrator.draws_in_batches();
     // Before there is a file, and until all are in place: who interrupts gets what is done.
     let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
-    let job = Job { name, spec, reference: reference(arguments, &plan)?, plan, environment };
+    let reference = reference(arguments, &plan)?;
+    let job = Job { name, spec, library, reference, plan, exposure: OnceLock::new(), environment };
     outputs.prepare()?;
 
-    let (painted, (image, statistics)) = environment.on_threads(arguments.threads, || {
+    let (painted, (image, statistics), exposure) = environment.on_threads(arguments.threads, || {
         let painted = job.paint(early.as_ref(), &mut outputs)?;
         let finished = job.finished(&painted)?;
-        Ok((painted, finished))
+        Ok((painted, finished, job.exposure(&outputs)?))
     })?;
-    // Nobody is left to tell if standard error is closed.
     for warning in &statistics.warnings {
         let _ = writeln!(stderr, "warning: {warning}");
     }
     for path in outputs.tone_mapped() {
-        let _ = writeln!(stderr, "{}: {}", path.display(), Exposure::of(&image));
+        let _ = writeln!(stderr, "{}: {}", path.display(), exposure);
     }
-    outputs.put(&image, &statistics)?;
+    outputs.put(&image, exposure, &statistics)?;
     Ok(if painted.end == End::Interrupted { INTERRUPTED } else { DONE })
 }
 
@@ -96,8 +111,11 @@ fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Im
 struct Job<'a> {
     name: String,
     spec: SceneSpec,
+    library: MediumLibrary,
     plan: ScenePlan,
     reference: Option<(Image, String)>,
+    /// Of every picture, once it was asked for.
+    exposure: OnceLock<Exposure>,
     environment: &'a Environment,
 }
 
@@ -123,7 +141,8 @@ impl Job<'_> {
             })?;
             files.beat(seconds, || {
                 let (image, statistics) = self.result(&painting.moments(), seconds, None)?;
-                outputs.put(&image, &statistics)
+                let exposure = self.exposure(outputs)?;
+                outputs.put(&image, exposure, &statistics)
             })
         };
         let painted = paint(plan, early, &|samples| bar.inc(samples), after_pass);
@@ -156,11 +175,24 @@ impl Job<'_> {
         Ok((image, moments.statistics(&self.plan, reference, seconds, warnings, provenance)))
     }
 
+    /// The exposure of every picture that is put, also unfinished; where none is tone-mapped it is not asked for.
+    fn exposure(&self, outputs: &Outputs) -> Result<Exposure, Failure> {
+        if let Some(exposure) = self.exposure.get() {
+            return Ok(*exposure);
+        }
+        let exposure = match outputs.tone_mapped().next() {
+            Some(_) => pilot::exposure(&self.spec, &self.library)
+                .map_err(|failure| self.in_scene(failure.within("exposure")))?,
+            None => Exposure::default(),
+        };
+        Ok(*self.exposure.get_or_init(|| exposure))
+    }
+
     /// A refusal names the scene; a file that cannot be written names itself.
     fn in_scene(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Refused(_) => failure.within(&self.name),
-            Failure::NotWritten(_) => failure,
+            Failure::NotWritten(_) | Failure::Interrupted => failure,
         }
     }
 }
@@ -183,7 +215,8 @@ mod tests {
             let reference = Image::new(width, height, vec![[value; 3]; width * height]);
             let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
             let reference = Some((reference, "reference.pfm".to_owned()));
-            Job { name: String::new(), spec: spec.clone(), plan, reference, environment: &environment }
+            let (spec, library, exposure) = (spec.clone(), MediumLibrary::default(), OnceLock::new());
+            Job { name: String::new(), spec, library, plan, reference, exposure, environment: &environment }
         };
         let mut painting = Painting::new(&plan);
         painting.add_pass(&|_| ()).unwrap();

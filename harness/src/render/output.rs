@@ -2,7 +2,7 @@
 
 use super::statistics::Statistics;
 use crate::Failure;
-use crate::image::{Format, Image};
+use crate::image::{Exposure, Format, Image};
 use crate::interrupt::{Guard, shield};
 use std::fs;
 use std::io::Write;
@@ -65,12 +65,18 @@ impl Outputs {
     ///
     /// # Errors
     /// If one cannot be written: none is put. If one cannot be put: those behind it are not.
-    pub(super) fn put(&mut self, image: &Image, statistics: &Statistics) -> Result<(), Failure> {
+    pub(super) fn put(
+        &mut self,
+        image: &Image,
+        exposure: Exposure,
+        statistics: &Statistics,
+    ) -> Result<(), Failure> {
         if self.prepared.is_empty() {
             self.prepare()?;
         }
         for ((path, kind), file) in self.targets.iter().zip(&mut self.prepared) {
             let bytes = match kind {
+                Kind::Image(Format::Png) => image.tone_mapped(exposure),
                 Kind::Image(format) => image.encode(*format),
                 Kind::Statistics => serde_json::to_vec_pretty(statistics).map_err(|error| error.to_string()),
             };
@@ -92,7 +98,7 @@ struct Prepared {
     given: PathBuf,
     target: PathBuf,
     file: NamedTempFile,
-    guard: Guard,
+    _guard: Guard,
 }
 
 impl Prepared {
@@ -125,7 +131,7 @@ impl Prepared {
         let mut shield = shield();
         let file = builder.tempfile_in(parent).map_err(failed)?;
         let guard = shield.remove_on_interrupt(file.path());
-        Ok(Self { given: path.to_owned(), target, file, guard })
+        Ok(Self { given: path.to_owned(), target, file, _guard: guard })
     }
 
     /// Fills the temporary file.
@@ -140,27 +146,10 @@ impl Prepared {
 /// # Errors
 /// If one cannot be: those behind it are not put either.
 fn put(files: Vec<Prepared>) -> Result<(), Failure> {
-    let mut result = Ok(());
-    // Guards ask for the shield when they are dropped: what is left over outlives it.
-    let mut left_over = Vec::new();
-    {
-        let mut shield = shield();
-        for Prepared { given, target, file, guard } in files {
-            if result.is_err() {
-                left_over.push((file, guard));
-                continue;
-            }
-            match file.persist(&target) {
-                Ok(_) => shield.forget(guard),
-                Err(error) => {
-                    result = Err(Failure::not_written(&given, error.error));
-                    left_over.push((error.file, guard));
-                }
-            }
-        }
-    }
-    drop(left_over);
-    result
+    let _shield = shield();
+    files.into_iter().try_for_each(|Prepared { given, target, file, .. }| {
+        file.persist(&target).map(|_| ()).map_err(|error| Failure::not_written(&given, error.error))
+    })
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use super::canvas::{Drawn, MeanVariance, Spent};
 use super::draw::Draw;
-use crate::Failure;
 use crate::plan::WalkPlan;
+use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::Medium;
 use fairflight_paths::PhotonTracer;
@@ -114,6 +114,7 @@ impl<C: Spectrum> Draw<'_, C> {
         let mut pixels = vec![C::ZERO; photons as usize];
         let mut bad = None;
         for sample in 0..samples {
+            interrupt::check()?;
             for photon in 0..photons {
                 tracer.trace(&mut source, |[column, row], radiance| {
                     if !radiance.is_finite() && bad.is_none() {

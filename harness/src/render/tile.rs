@@ -56,6 +56,11 @@ pub(super) struct Tile<C> {
 }
 
 impl<C: Spectrum> Tile<C> {
+    /// Memory that a pixel takes until it is written: its moments here and in the finished image, its stream,
+    /// its mean \[bytes\].
+    pub(super) const BYTES_PER_PIXEL: usize =
+        2 * size_of::<Pixel<C>>() + size_of::<Seeded>() + size_of::<[f64; 3]>() + size_of::<[f32; 3]>();
+
     /// The tiles of an image without samples: a stream of its own for each pixel, whatever the tiles.
     pub(super) fn all(resolution: [u32; 2], seed: u64) -> Vec<Self> {
         let source = |[column, row]: [u32; 2]| {

@@ -2,8 +2,8 @@
 
 use super::canvas::Spent;
 use super::draw::Draw;
-use crate::Failure;
 use crate::plan::VplPlan;
+use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::Medium;
 use fairflight_paths::transport::World;
@@ -111,6 +111,7 @@ impl<C: Spectrum> Draw<'_, C> {
     ) -> Result<Traced<C>, Failure> {
         let keep_near = plan.keep_near.map(|radius| KeepNear { point: self.plan.camera.origin(), radius });
         let chunk = |index: u32| {
+            interrupt::check()?;
             let clock = ThreadTime::now();
             let volume = self.volume(medium);
             let world = World { volume: &volume, surfaces, lights: &self.radiant.lights };

@@ -6,8 +6,9 @@ use super::result::Report;
 use super::stability::stability;
 use super::study::{Options, standard};
 use super::write::{self, Files};
+use crate::budget::Budget;
 use crate::cli::ReportArguments;
-use crate::{DONE, Environment, Failure, UNSOUND};
+use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -49,6 +50,7 @@ fn report(
                     seed: arguments.seed,
                     threads: rayon::current_num_threads(),
                     vdb: volume(arguments),
+                    budget: Budget::of(arguments.budget),
                 };
                 study(&options, environment)
             })?;
@@ -69,6 +71,7 @@ fn measured_and_written<R: Files + Send + Sync>(
     // Found out before a minute of measurement, not after it.
     let prepared = write::prepare(folder)?;
     let report = environment.on_threads(arguments.threads, measure)?;
+    interrupt::check()?;
     environment.on_threads(arguments.threads, || prepared.commit(&report))?;
     Ok(report)
 }

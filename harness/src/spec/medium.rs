@@ -41,11 +41,24 @@ pub enum MediumKind {
     Vdb {
         /// The file.
         file: PathBuf,
-        /// The grid; without it, the first float grid.
+        /// The grid; without it `density`, or else the only float grid.
         grid: Option<String>,
         /// A factor in front of the voxel values.
         scale: f64,
+        /// Voxels below 0.
+        negative: NegativeVoxels,
     },
+}
+
+/// What is done with voxels below 0: densities have none, and of what is none a grid without a class gives no
+/// other sign.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NegativeVoxels {
+    /// The volume is refused.
+    #[default]
+    Refused,
+    /// They are negative extinctions, as `allow_negative` says.
+    Allowed,
 }
 
 impl MediumSpec {
@@ -91,6 +104,10 @@ impl MediumKind {
                 file: PathBuf::from(object.required("file")?.text()?),
                 grid: object.optional("grid").map(|node| node.text().map(str::to_owned)).transpose()?,
                 scale: number_or(object, "scale", 1.0)?,
+                negative: match object.optional("allow_negative").map(|node| node.boolean()).transpose()? {
+                    Some(true) => NegativeVoxels::Allowed,
+                    _ => NegativeVoxels::Refused,
+                },
             },
             _ => {
                 return Err(kind.refuse("must be homogeneous, analytic_cosine, perlin, expression or vdb"));

@@ -18,7 +18,7 @@ pub use beyond::{
 };
 pub use estimator::{ControlSpec, EstimatorSpec, SamplingSpec};
 pub use experiment::{Experiment, Overrides, Request, Sweep};
-pub use medium::{MediumKind, MediumSpec};
+pub use medium::{MediumKind, MediumSpec, NegativeVoxels};
 pub use node::{Node, Object};
 pub use profile::ProfileSpec;
 pub use scene::{

@@ -116,9 +116,9 @@ fn what_an_estimator_needs_to_know_is_said() {
         (expression, r#"{ "kind": "p_series", "version": "cmf" }"#, "p_series needs a pivot; give `pivot`"),
         (expression, r#"{ "kind": "unbiased_ray_marching" }"#, "give `teeth` or `pivot`"),
         (
-            expression,
+            r#"{ "kind": "expression", "sigma_t": "1/s", "length": 2 }"#,
             r#"{ "kind": "residual_cells", "cells": 4 }"#,
-            "an expression does not know its bounds in cells",
+            "no bounds of sigma_t are found between s = 0 and s = 0.5",
         ),
         (
             expression,
@@ -167,6 +167,8 @@ fn advice_names_an_estimator_that_reads_back() {
     let run = harness(&["advise", "-", "--rays", "6", "--seed", "3"], r#"{ "kind": "analytic_cosine" }"#);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stderr.contains("gain per look-up"));
+    let first = run.stderr.lines().next().unwrap();
+    assert_eq!(first, "advice for transmittance along rays, not for pictures");
     let answer: Value = serde_json::from_str(&run.stdout).unwrap();
     let measured = answer["measured"].as_array().unwrap();
     assert!(measured.iter().any(|advice| advice["estimator"] == "ratio tracking"));
@@ -193,13 +195,24 @@ fn advice_takes_volumes_and_scenes_and_refuses_the_rest() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let scene = json!({
         "camera": { "origin": [0, 0, -20], "look_at": [0, 0, 10], "up": [0, 1, 0], "vertical_fov_degrees": 40, "resolution": [16, 16] },
-        "medium": { "kind": "analytic_cosine", "albedo": 0.7, "phase": { "kind": "rayleigh" } },
+        "medium": { "kind": "analytic_cosine", "albedo": 0, "phase": { "kind": "rayleigh" } },
         "lights": [],
-        "integrator": { "kind": "particle_tracer", "version": "adaptive", "sigma_samp": 0.8 },
+        "integrator": { "kind": "transmittance", "estimator": { "kind": "regular" } },
         "samples_per_pixel": 1, "seed": 1
     });
     let run = harness(&["advise", "-", "--rays", "4"], &scene.to_string());
     assert_eq!(run.code, 0, "{}", run.stderr);
+    let mut scattering = scene.clone();
+    scattering["medium"]["albedo"] = json!([0, 0.1, 0]);
+    let mut walking = scene.clone();
+    walking["integrator"] = json!({ "kind": "particle_tracer", "version": "adaptive", "sigma_samp": 0.8 });
+    for (scene, key) in [(scattering, "medium.albedo: "), (walking, "integrator.kind: ")] {
+        let run = harness(&["advise", "-", "--rays", "4"], &scene.to_string());
+        assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{key}: {}", run.stderr);
+        for words in [key, "a picture", "--vdb FILE", "MEDIUM.json"] {
+            assert!(run.stderr.contains(words) && run.stderr.lines().count() == 1, "{words}: {}", run.stderr);
+        }
+    }
     for (arguments, input, words) in [
         (&["advise", "-"][..], r#"{ "kind": "homogeneous" }"#, "sigma_t: this key is missing"),
         (

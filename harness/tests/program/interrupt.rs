@@ -138,3 +138,125 @@ fn an_interrupted_report_leaves_nothing_and_says_so() {
         assert_eq!(entries(root.path()), 0, "{signal}");
     }
 }
+
+/// Waits until the program serves signals: what comes before is the system's.
+#[cfg(target_os = "linux")]
+fn wait_until_served(process: u32) {
+    wait_for("a handler of SIGTERM", || {
+        let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).expect("a mask") >> 14 & 1 == 1)
+    });
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn whatever_runs_ends_without_a_result_and_says_so() {
+    let root = tempfile::tempdir().expect("a temporary folder");
+    let picture = root.path().join("image.pfm").display().to_string();
+    let mut endless = scene();
+    endless["camera"]["resolution"] = json!([512, 512]);
+    endless["samples_per_pixel"] = json!(4_000);
+    let mut photons = endless.clone();
+    photons["integrator"]["particles"] = json!("photons");
+    let experiment = r#"{ "profile": { "kind": "constant", "sigma_t": 1, "length": 1 },
+        "estimator": { "kind": "double_particle", "sigma_samp": 1 }, "samples": 40000000000, "seed": 1 }"#;
+    let noise = r#"{ "kind": "perlin", "bounds": { "sphere": { "center": [0, 0, 0], "radius": 90 } } }"#;
+    for (arguments, input, signal) in [
+        (&["estimate", "-"][..], experiment.to_owned(), "-HUP"),
+        (&["advise", "-", "--rays", "2000"], noise.to_owned(), "-TERM"),
+        (&["verify"], String::new(), "-INT"),
+        (&["render", "-", "--out", &picture], endless.to_string(), "-TERM"),
+        (&["render", "-", "--out", &picture], photons.to_string(), "-QUIT"),
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_harness"))
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        child.stdin.take().expect("a pipe").write_all(input.as_bytes()).expect("it reads");
+        wait_until_served(child.id());
+        std::thread::sleep(Duration::from_millis(200));
+        send(signal, &child);
+        wait_for("the end", || child.try_wait().expect("a state").is_some());
+        let output = child.wait_with_output().expect("an end");
+        assert_eq!(output.status.code(), Some(130), "{arguments:?}: {output:?}");
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted\n", "{arguments:?}");
+        assert!(output.stdout.is_empty() && entries(root.path()) == 0, "{arguments:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn more_than_an_hour_is_said_before_it_begins() {
+    let experiment = r#"{ "profile": { "kind": "constant", "sigma_t": 1, "length": 1 },
+        "estimator": { "kind": "ray_marching", "steps": 100000, "jitter": true }, "samples": 10000000000, "seed": 1 }"#;
+    let mut child = Command::new(env!("CARGO_BIN_EXE_harness"))
+        .args(["estimate", "-", "--budget", "1e16", "--threads", "1"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(experiment.as_bytes()).expect("it reads");
+    let mut stderr = BufReader::new(child.stderr.take().expect("a pipe"));
+    let mut line = String::new();
+    stderr.read_line(&mut line).expect("it says so");
+    assert!(line.starts_with("warning: this will take about ") && line.contains("1.0e15 look-ups"), "{line}");
+    send("-INT", &child);
+    wait_for("the end", || child.try_wait().expect("a state").is_some());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+}
+
+/// What is ignored when the program starts: hang-ups under `nohup`, the interrupts of the keyboard in the
+/// background of a shell.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
+    for (shell, ignored, served) in [
+        (r#"nohup "$0" "$@" <"$SCENE" & echo $!; wait $!"#, &["-HUP", "-INT", "-QUIT"][..], "-TERM"),
+        (r#""$0" "$@" <"$SCENE" & echo $!; wait $!"#, &["-INT", "-QUIT"], "-HUP"),
+        (r#"trap '' TERM; exec "$0" "$@" <"$SCENE""#, &["-TERM"], "-INT"),
+    ] {
+        let root = tempfile::tempdir().expect("a temporary folder");
+        let specs = tempfile::tempdir().expect("a temporary folder");
+        let spec = specs.path().join("scene.json");
+        let mut endless = scene();
+        endless["camera"]["resolution"] = json!([512, 512]);
+        endless["samples_per_pixel"] = json!(4_000);
+        fs::write(&spec, endless.to_string()).expect("a file");
+        let mut child = Command::new("sh")
+            .args(["-c", shell, env!("CARGO_BIN_EXE_harness"), "render", "-", "--threads", "1", "--out"])
+            .arg(root.path().join("image.png"))
+            .arg("--out")
+            .arg(root.path().join("image.json"))
+            .env("SCENE", &spec)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("a shell");
+        let mut stdout = BufReader::new(child.stdout.take().expect("a pipe"));
+        let process = if shell.starts_with("trap") {
+            child.id()
+        } else {
+            let mut line = String::new();
+            stdout.read_line(&mut line).expect("the shell tells the process");
+            line.trim().parse().expect("a number")
+        };
+        wait_for("temporary files", || entries(root.path()) == 2);
+        let signal = |name: &str| {
+            let status = Command::new("kill").args([name, &process.to_string()]).status().expect("kill runs");
+            assert!(status.success(), "{shell}: {name} finds nobody");
+        };
+        ignored.iter().for_each(|name| signal(name));
+        // Longer than a request would be waited for.
+        std::thread::sleep(fairflight_harness::interrupt::GRACE + Duration::from_millis(500));
+        assert_eq!(entries(root.path()), 2, "{shell}: still at work");
+        signal(served);
+        wait_for("the end", || child.try_wait().expect("a state").is_some());
+        assert_eq!(child.wait().expect("an end").code(), Some(130), "{shell}");
+        assert_eq!(entries(root.path()), 0, "{shell}");
+    }
+}

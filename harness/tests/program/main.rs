@@ -1,12 +1,14 @@
 //! The program, driven as a user would: arguments and streams in, exit code, streams and files out.
 
 mod beyond;
+mod budget;
 mod common;
 mod estimate;
 #[cfg(unix)]
 mod interrupt;
 mod lawful_runs;
 mod passes;
+mod references;
 mod refusals;
 mod render;
 mod render_refusals;

@@ -160,6 +160,88 @@ fn volumes() {
         &ray(&fixture("cloud.vdb"), r#", "grid": "smoke""#),
         &["profile.medium.file", "smoke", "density", "temperature"],
     );
+    // Fourteen float grids, none of them called density.
+    let codes = fixture("codes.vdb");
+    profile_refused(&ray(&codes, ""), &["profile.medium.file", "several float grids", "twin[0], twin[1]"]);
+}
+
+#[test]
+fn negative_voxels_are_refused_unless_they_are_meant() {
+    let medium = |more: &str| {
+        let codes = fixture("codes.vdb");
+        format!(r#"{{ "kind": "vdb", "file": "{codes}", "grid": "code1_minus_background"{more} }}"#)
+    };
+    let ray = |more: &str| {
+        let medium = medium(more);
+        format!(r#"{{ "kind": "ray", "medium": {medium}, "origin": [-6.5, -3, 5], "direction": [1, 0, 0] }}"#)
+    };
+    for more in ["", r#", "allow_negative": false"#, r#", "scale": -1"#] {
+        profile_refused(
+            &ray(more),
+            &["profile.medium.file", "code1_minus_background", "-0.25", "allow_negative"],
+        );
+    }
+    profile_refused(&ray(r#", "allow_negative": 1"#), &["profile.medium.allow_negative", "true or false"]);
+    let allowed = format!(
+        r#"{{ "profile": {}, "estimator": {{ "kind": "double_particle", "sigma_samp": 9 }}, "samples": 100, "seed": 1 }}"#,
+        ray(r#", "allow_negative": true"#)
+    );
+    let outcome = harness(&["estimate", "-"], &allowed);
+    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+    let outcome = harness(&["advise", "-"], &medium(""));
+    assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""));
+    assert!(outcome.stderr.contains("allow_negative"), "{}", outcome.stderr);
+}
+
+/// The cloud with every `from` of its head and descriptors overwritten by `to`.
+fn overwritten(from: &[u8], to: &[u8]) -> tempfile::NamedTempFile {
+    assert_eq!(from.len(), to.len(), "positions stay");
+    let mut bytes = std::fs::read(fixture("cloud.vdb")).unwrap();
+    let mut found = 0;
+    for at in 0..bytes.len() - from.len() {
+        if bytes[at..].starts_with(from) {
+            bytes[at..at + to.len()].copy_from_slice(to);
+            found += 1;
+        }
+    }
+    assert!(found > 0, "nothing to overwrite");
+    let mut file = tempfile::Builder::new().suffix(".vdb").tempfile().unwrap();
+    std::io::Write::write_all(&mut file, &bytes).unwrap();
+    file
+}
+
+#[test]
+fn what_a_volume_is_taken_for_is_not_left_to_chance() {
+    let nameless = overwritten(b"density", b"densitx");
+    let level_set = overwritten(b"fog volume", b" level set");
+    let out = tempfile::tempdir().unwrap();
+    let folder = out.path().join("report");
+    let picture = out.path().join("image.pfm");
+    for (file, words) in [
+        (&nameless, "several float grids, of which one must be named: the file has densitx, temperature"),
+        (&level_set, "level set"),
+    ] {
+        let file = file.path().to_str().unwrap();
+        let medium = format!(r#""kind": "vdb", "file": "{file}""#);
+        let experiment = format!(
+            r#"{{ "profile": {{ "kind": "ray", "medium": {{ {medium} }}, "origin": [0, 0, 0], "direction": [0, 0, 1] }},
+                  "estimator": {{ "kind": "double_particle", "sigma_samp": 1 }}, "samples": 10, "seed": 1 }}"#
+        );
+        let scene = include_str!("../../scenes/eq21-environment.json")
+            .replace(r#""kind": "analytic_cosine""#, &medium);
+        let (folder, picture) = (folder.to_str().unwrap(), picture.to_str().unwrap());
+        for (arguments, input) in [
+            (&["estimate", "-"][..], experiment.as_str()),
+            (&["render", "-", "--out", picture], &scene),
+            (&["advise", "--vdb", file], ""),
+            (&["report", "--quick", "--vdb", file, "--out", folder], ""),
+        ] {
+            let outcome = harness(arguments, input);
+            assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""), "{arguments:?}: {}", outcome.stderr);
+            assert!(outcome.stderr.contains(words), "{arguments:?}: {}", outcome.stderr);
+        }
+    }
+    assert_eq!(std::fs::read_dir(out.path()).unwrap().count(), 0);
 }
 
 #[test]
@@ -226,8 +308,7 @@ fn a_field_below_zero_is_no_field_for_woodcock() {
 }
 
 #[test]
-fn a_majorant_that_only_a_look_up_refutes() {
-    // The peak is too narrow for the nodes of the quadrature of a field without breakpoints to be sure to meet it.
+fn a_majorant_that_a_narrow_peak_refutes() {
     let peak =
         r#"{ "kind": "expression", "sigma_t": "0.1 + 5*max(0, 1 - abs(s - 1.2345)*1e4)", "length": 2 }"#;
     let woodcock = r#"{ "kind": "woodcock", "majorant": 0.5 }"#;

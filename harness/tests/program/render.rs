@@ -114,6 +114,60 @@ fn each_format_is_written_and_read_back() {
     assert!((efficiency * variance / 4.0 * lookups - 1.0).abs() < 1e-12);
 }
 
+/// The picture, and how it was mapped.
+fn png(path: &Path) -> (Vec<u8>, String) {
+    let bytes = std::fs::read(path).unwrap();
+    let mut reader = png::Decoder::new(bytes.as_slice()).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size()];
+    reader.next_frame(&mut pixels).unwrap();
+    (pixels, reader.info().uncompressed_latin1_text[0].text.clone())
+}
+
+#[test]
+fn the_exposure_is_that_of_the_scene() {
+    let room: Value = serde_json::from_str(include_str!("../../scenes/smoke-room.json")).unwrap();
+    let mut lit: Value = serde_json::from_str(include_str!("../../scenes/lit-cloud.json")).unwrap();
+    lit["integrator"] = json!({ "kind": "path_tracer" });
+    let coloured: Value = serde_json::from_str(include_str!("../../scenes/coloured.json")).unwrap();
+    let mut photons = coloured.clone();
+    photons["integrator"]["particles"] = json!("photons");
+    for mut scene in [scene(), room, lit, coloured, photons] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut mapped = |resolution: [u32; 2], more: &[&str]| {
+            scene["camera"]["resolution"] = json!(resolution);
+            let name = format!("{}{}.png", resolution[0], more.concat());
+            png(&rendered(&scene, folder.path(), &[&name], more)[0]).1
+        };
+        let once = mapped([12, 12], &["--samples-per-pixel", "1"]);
+        assert_eq!(mapped([12, 12], &["--samples-per-pixel", "16", "--seed", "7"]), once);
+        assert_eq!(mapped([24, 24], &["--samples-per-pixel", "2", "--threads", "1"]), once);
+    }
+    // In passes, of which some are not drawn.
+    let folder = tempfile::tempdir().unwrap();
+    let whole = png(&rendered(&scene(), folder.path(), &["whole.png"], &[])[0]).1;
+    let limit = ["--time-limit", "0.001", "--samples-per-pixel", "4000"];
+    assert_eq!(png(&rendered(&scene(), folder.path(), &["part.png"], &limit)[0]).1, whole);
+}
+
+#[test]
+fn a_lamp_in_view_leaves_the_room_visible() {
+    let mut room: Value = serde_json::from_str(include_str!("../../scenes/smoke-room.json")).unwrap();
+    room["camera"]["resolution"] = json!([16, 16]);
+    room["samples_per_pixel"] = json!(4);
+    let mut stronger = room.clone();
+    // The same lamp, a quarter of the picture: it is looked at from below.
+    stronger["camera"]["origin"] = json!([0, -0.9, 0]);
+    stronger["camera"]["look_at"] = json!([0, 0.95, 0.1]);
+    stronger["surfaces"][5]["emission"] = json!(500);
+    for scene in [room, stronger] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut levels = png(&rendered(&scene, folder.path(), &["room.png"], &[])[0]).0;
+        levels.sort_unstable();
+        let median = levels[levels.len() / 2];
+        assert!((70..250).contains(&median), "the median of the picture is {median} of 255");
+    }
+}
+
 #[test]
 fn the_error_against_a_reference_is_the_distance_of_the_images() {
     let folder = tempfile::tempdir().unwrap();

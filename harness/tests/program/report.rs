@@ -141,3 +141,24 @@ fn verify_of_one_estimator_holds_and_prints_its_power() {
     assert!(outcome.stdout.contains("0 do not hold") && outcome.stdout.contains("with probability 0.99"));
     assert!(outcome.stdout.contains("line_integral_4") && !outcome.stdout.contains("/woodcock"));
 }
+
+#[test]
+fn verify_as_json_tells_each_check_with_its_p_values() {
+    let outcome = harness(&["verify", "--quick", "--json", "--estimator", "adaptive_ratio"], "");
+    assert_eq!(outcome.code, 0, "{}{}", outcome.stdout, outcome.stderr);
+    let json: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    assert_eq!(json["provenance"]["seed"], 1);
+    assert_eq!(json["family"]["level"], 1e-6);
+    let checks = json["checks"].as_array().unwrap();
+    assert!(checks.len() > 4);
+    for check in checks {
+        assert_eq!(check["holds"], true, "{check}");
+        assert!(check["kinds"].as_array().unwrap().contains(&"adaptive_ratio".into()), "{check}");
+        let p_values = check["p_values"].as_array().unwrap();
+        assert!(p_values.iter().all(|p| (0.0..=1.0).contains(&p["p"].as_f64().unwrap())), "{check}");
+        if check["law"] == "transmittance" {
+            assert_eq!(p_values[0]["of"], "mean", "{check}");
+            assert!(["exact", "studentised"].contains(&p_values[0]["level"].as_str().unwrap()), "{check}");
+        }
+    }
+}

@@ -1,11 +1,13 @@
 //! Decomposition tracking: a control in closed form races with what is left of the field (kutz-2017).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race, powers};
+use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race, powers, times_exp};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_collision::{
     Albedo, AlbedoError, CollisionModel, Outcome, SingleOutcome, SingleParticle, Version,
 };
-use fairflight_media::{Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{
+    Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance, rounding_of_difference,
+};
 use fairflight_sources::UniformSource;
 
 /// The nearer of two flights: one through a control c(s) ≥ 0 by inversion, one through the residual σ_t − c by tracking with
@@ -60,6 +62,16 @@ impl<C: InvertOpticalThickness, R: InvertOpticalThickness> DecompositionTracking
         let transmitted = self.model.transmitted(ratio);
         std::array::from_fn(|i| sampling * (transmitted.moment(i as i32 + 1) - 1.0) - control)
     }
+
+    /// Splits the ray where the moments of a collision are not smooth in ρ.
+    fn split_at_kinks<F: Extinction>(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) {
+        for kink in self.model.kinks() {
+            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
+                let (_, sampling, ratio) = self.at(s, sigma_t);
+                if sampling > 0.0 { ratio - kink } else { 1.0 }
+            });
+        }
+    }
 }
 
 impl<F, C, R> FreeFlight<F> for DecompositionTracking<C, R>
@@ -98,7 +110,13 @@ where
     #[inline]
     fn admits(&self, _field: &F, s: f64, sigma_t: f64) -> bool {
         let (control, sampling, ratio) = self.at(s, sigma_t);
-        if sampling > 0.0 { self.model.admits(ratio) } else { sigma_t == control }
+        let rounding = rounding_of_difference(sigma_t, control);
+        if sampling > 0.0 {
+            // A domain that ends at the control, or σ_samp above it, holds what rounding carried over its end.
+            return self.model.admits(ratio)
+                || [-1.0, 1.0].iter().any(|side| self.model.admits(ratio + side * rounding / sampling));
+        }
+        (sigma_t - control).abs() <= rounding
     }
 }
 
@@ -114,6 +132,7 @@ where
         tolerance: Tolerance,
         score: &dyn Fn(f64) -> f64,
     ) -> Integral<HIGHEST_MOMENT> {
+        self.split_at_kinks(quadrature, tolerance);
         quadrature.integrate_nested(
             tolerance,
             |s, sigma_t| self.growth(s, sigma_t),
@@ -121,13 +140,14 @@ where
                 let (control, sampling, ratio) = self.at(s, sigma_t);
                 let (scattered, scores) = (self.model.scattered(ratio), powers(score(s)));
                 std::array::from_fn(|i| {
-                    (control + sampling * scattered.moment(i as i32 + 1)) * growth[i].exp() * scores[i]
+                    times_exp(control + sampling * scattered.moment(i as i32 + 1), growth[i], scores[i])
                 })
             },
         )
     }
 
     fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
+        self.split_at_kinks(quadrature, tolerance);
         quadrature.integrate(tolerance, |s, sigma_t| self.growth(s, sigma_t)).value.map(f64::exp)
     }
 
@@ -136,6 +156,7 @@ where
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
     ) -> Option<[f64; HIGHEST_MOMENT]> {
+        self.split_at_kinks(quadrature, tolerance);
         Some(lookups_of_a_race(quadrature, tolerance, &|s, sigma_t| {
             let (control, sampling, ratio) = self.at(s, sigma_t);
             let [ends, passes] =

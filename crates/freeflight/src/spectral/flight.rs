@@ -99,6 +99,24 @@ pub(super) fn magnitude<const N: usize>(weights: &[f64; N]) -> f64 {
     weights.iter().map(|weight| weight.abs()).sum()
 }
 
+/// Weights as a sampler reckons with them, and the unit that they are in: 1, but for a path whose weights are near either end of the
+/// range, where their products with probabilities would under- or overflow and shares of a sum be 0/0.
+#[inline]
+pub(super) fn centred<const N: usize>(weights: [f64; N]) -> ([f64; N], f64) {
+    const FAR: f64 = {
+        let step = (1_u128 << 127) as f64;
+        step * step * step * step
+    };
+    let size = magnitude(&weights);
+    // A power of two, 2^±508: exact, also back, but for what is denormal.
+    let unit = match size {
+        _ if size > FAR => FAR,
+        _ if size > 0.0 && size * FAR < 1.0 => 1.0 / FAR,
+        _ => return (weights, 1.0),
+    };
+    (weights.map(|weight| weight / unit), unit)
+}
+
 /// The index l with probability |w_l|/Σ|w|, from one variate.
 #[inline]
 pub(super) fn pick<const N: usize, S: UniformSource + ?Sized>(weights: &[f64; N], source: &mut S) -> usize {

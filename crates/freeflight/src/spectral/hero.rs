@@ -1,6 +1,6 @@
 //! Hero wavelength sampling: one wavelength decides, all share the path, the balance heuristic weighs them (wilkie-2014).
 
-use super::flight::{magnitude, pick};
+use super::flight::{centred, magnitude, pick};
 use super::{SpectralFlight, SpectralFreeFlight};
 use crate::ClosedForm;
 use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race};
@@ -62,7 +62,7 @@ where
         source: &mut S,
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.majorant.length(), "prepared for another profile");
-        let mut weights = incoming;
+        let (mut weights, unit) = centred(incoming);
         let hero = pick(&weights, source);
         let mut s = 0.0;
         while let Some(next) = self.majorant.invert(s, source.next_exponential()) {
@@ -71,11 +71,12 @@ where
             let ratios = field.sigma_t(s).map(|sigma| sigma / majorant);
             // By the same ratio that weighs: an event that is drawn has e_hero > 0, and the sum below too.
             if source.next_uniform() < ratios[hero] {
-                return SpectralFlight::Collided { distance: s, weights: balanced(&weights, &ratios) };
+                let weights = balanced(&weights, &ratios).map(|weight| weight * unit);
+                return SpectralFlight::Collided { distance: s, weights };
             }
             weights = balanced(&weights, &ratios.map(|r| 1.0 - r));
         }
-        SpectralFlight::Escaped { weights }
+        SpectralFlight::Escaped { weights: weights.map(|weight| weight * unit) }
     }
 
     #[inline]
@@ -262,6 +263,30 @@ mod tests {
         assert!((mean - exact).abs() < 5.0 * error, "{mean} for {exact} ± {error}");
         // Between the square of the mean and N times it.
         assert!(exact > (-0.8_f64).exp() && exact < 2.0 * (-0.4_f64).exp());
+    }
+
+    /// A path that hardly counts any more: in products of denormal weights the shares of the wavelengths would be 0/0.
+    #[test]
+    fn weights_at_the_ends_of_the_numbers_are_those_in_the_middle() {
+        let field = Scaled::new(constant(1.0), [0.9, 0.2]).unwrap();
+        let hero = HeroWavelength::new(constant(1.3));
+        let average = SpectralTracking::new(AverageScheme, constant(1.3));
+        let both = |incoming: [f64; 2], seed: u64| {
+            [
+                hero.sample_from(&field, incoming, &mut Seeded::new(seed)),
+                average.sample_from(&field, incoming, &mut Seeded::new(seed)),
+            ]
+        };
+        for unit in [f64::from_bits(1 << 20), 2.0_f64.powi(1000)] {
+            for seed in 0..100 {
+                for (near, far) in both([1.0, 0.5], seed).into_iter().zip(both([unit, 0.5 * unit], seed)) {
+                    assert_eq!(far.of(0).distance(), near.of(0).distance());
+                    for (far, near) in far.weights().into_iter().zip(near.weights()) {
+                        assert_relative_eq!(far / unit, near, max_relative = 1e-5);
+                    }
+                }
+            }
+        }
     }
 
     #[test]

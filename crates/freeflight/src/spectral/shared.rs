@@ -2,7 +2,7 @@
 
 use super::{SpectralFlight, SpectralFreeFlight};
 use crate::ClosedForm;
-use crate::theory::{HIGHEST_MOMENT, powers};
+use crate::theory::{HIGHEST_MOMENT, powers, times_exp};
 use fairflight_media::{
     Integral, InvertOpticalThickness, RayQuadrature, SpectralExtinction, SpectralOpticalThickness, Tolerance,
     Wavelength,
@@ -47,21 +47,24 @@ where
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         // T_l/exp(−∫ σ_samp) up to s as one exponential: neither of the two need be a number by itself.
-        let transmitted = |s: f64| {
+        let exponents = |s: f64| {
             let (spectrum, drawn) =
                 (field.optical_thickness(0.0, s), self.sampling.optical_thickness(0.0, s));
-            spectrum.map(|tau| (drawn - tau).exp())
+            spectrum.map(|tau| drawn - tau)
         };
         match self.sampling.invert(0.0, source.next_exponential()) {
             Some(distance) => {
-                let (sigma_t, transmitted) = (field.sigma_t(distance), transmitted(distance));
+                let (sigma_t, exponents) = (field.sigma_t(distance), exponents(distance));
                 let sampling = self.sampling.sigma_t(distance);
-                let weights = std::array::from_fn(|l| incoming[l] * transmitted[l] * (sigma_t[l] / sampling));
+                let weights =
+                    std::array::from_fn(|l| times_exp(incoming[l], exponents[l], sigma_t[l] / sampling));
                 SpectralFlight::Collided { distance, weights }
             }
             None => {
-                let transmitted = transmitted(field.length());
-                SpectralFlight::Escaped { weights: std::array::from_fn(|l| incoming[l] * transmitted[l]) }
+                let exponents = exponents(field.length());
+                SpectralFlight::Escaped {
+                    weights: std::array::from_fn(|l| times_exp(incoming[l], exponents[l], 1.0)),
+                }
             }
         }
     }
@@ -97,7 +100,7 @@ where
                     return [0.0; HIGHEST_MOMENT];
                 }
                 let weights = powers(sigma_t / sampling * score(s));
-                std::array::from_fn(|i| sampling * weights[i] * logarithms[i].exp())
+                std::array::from_fn(|i| times_exp(sampling * weights[i], logarithms[i], 1.0))
             },
         )
     }
@@ -143,6 +146,23 @@ mod tests {
     }
 
     /// raab-2008 section 3.2 over a finite length: (1 − exp(−(2 − ρ) L))/(ρ (2 − ρ)) for σ_1 = 1, σ_2 = ρ.
+    #[test]
+    fn a_wavelength_that_meets_nothing_counts_nothing_however_dense_the_other() {
+        // exp(1500) is no number; beside σ_t = 0 at the collision it is not asked for.
+        let steps = |values: [f64; 2]| {
+            fairflight_media::PiecewiseConstant::new(vec![0.0, 1.0, 2.0], values.to_vec()).unwrap()
+        };
+        let field = fairflight_media::Profiles::new([steps([1500.0, 1.0]), steps([0.0, 0.0])]).unwrap();
+        let shared = SharedDistance::new(steps([1500.0, 1.0]));
+        for u in [0.3, 1.0 - 1e-16] {
+            let weights = shared.sample(&field, &mut Scripted::new([u])).weights();
+            assert!(weights[0] >= 0.0 && weights[1] == 0.0, "{u}: {weights:?}");
+        }
+        let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 1).unwrap(), &[]);
+        let collided = shared.collided(&mut quadrature, Tolerance::to(1e-6), &|_| 1.0);
+        assert_eq!(collided.value, [0.0; HIGHEST_MOMENT]);
+    }
+
     #[test]
     fn the_second_moment_is_the_paper_s() {
         for (ratio, length) in [(0.7, 40.0), (1.9, 20.0), (2.0, 20.0), (2.1, 20.0)] {

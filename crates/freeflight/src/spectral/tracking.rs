@@ -1,12 +1,9 @@
 //! Spectral tracking: one walk through a sampling extinction, with a weight for each wavelength (kutz-2017).
 
-use super::scheme::{MaxScheme, Scheme};
-use super::{AverageScheme, SpectralFlight, SpectralFreeFlight};
-use crate::ClosedForm;
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race, powers};
-use fairflight_media::{
-    Integral, InvertOpticalThickness, RayQuadrature, SpectralExtinction, Tolerance, Vacuum, Wavelength,
-};
+use super::flight::centred;
+use super::scheme::Scheme;
+use super::{SpectralFlight, SpectralFreeFlight};
+use fairflight_media::{InvertOpticalThickness, SpectralExtinction, Vacuum, rounding_of_difference};
 use fairflight_sources::UniformSource;
 
 /// Flies through σ_samp; at each tentative collision one decision is made for all wavelengths, by a [`Scheme`].
@@ -29,14 +26,14 @@ use fairflight_sources::UniformSource;
 /// ends first, the flight has collided there, with the weights as they are: it has lost c more per length and gained
 /// c T_l, whatever l. A collision with the control costs no look-up.
 ///
-/// **Moments.** With [`MaxScheme`] events do not depend on the past, and with P(s) the weights have a product law,
+/// **Moments.** (`tracking_law.rs`) With [`MaxScheme`](super::MaxScheme) events do not depend on the past, and with P(s) the weights have a product law,
 ///
 /// > M_k(s) = exp(∫_0^s σ_samp ((1 − r_l)^k (1 − P)^(1 − k) − 1) − c),
 /// > E\[weight_l^k; collided\] = ∫ (c + σ_samp r_l^k P^(1 − k)) M_k ds,   E\[weight_l^k; escaped\] = M_k(length).
 ///
 /// All are finite on a finite ray. For 0 ≤ r ≤ 1 the second grows as exp(∫ σ_samp ((1 − r_l)² (1 + r_max − r_min)/(1 − r_min) − 1)):
 /// in an endless medium with σ_samp = σ_max it is infinite for the thinnest wavelength from σ_max/σ_min = (3 + √5)/2 = 2.618 on, and a
-/// loose majorant makes it worse, down to 2. With [`AverageScheme`] and 0 ≤ r_l ≤ 1 all weights lie in \[0, N\], so that
+/// loose majorant makes it worse, down to 2. With [`AverageScheme`](super::AverageScheme) and 0 ≤ r_l ≤ 1 all weights lie in \[0, N\], so that
 /// E\[weight_l²\] ≤ N E\[weight_l\]; only the mean has a closed form.
 ///
 /// **Cost.** ∫ σ_samp · P(still under way) ds look-ups; for the average scheme within its bound that is the mean over
@@ -47,8 +44,8 @@ use fairflight_sources::UniformSource;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralTracking<S, R, C = Vacuum> {
     scheme: S,
-    sampling: R,
-    control: C,
+    pub(super) sampling: R,
+    pub(super) control: C,
 }
 
 impl<S: Scheme, R: InvertOpticalThickness> SpectralTracking<S, R> {
@@ -69,7 +66,7 @@ impl<S: Scheme, R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTr
 
     /// r_l at `s`.
     #[inline]
-    fn ratios<const N: usize>(&self, s: f64, sigma_t: &[f64; N]) -> [f64; N] {
+    pub(super) fn ratios<const N: usize>(&self, s: f64, sigma_t: &[f64; N]) -> [f64; N] {
         let (control, sampling) = (self.control.sigma_t(s), self.sampling.sigma_t(s));
         sigma_t.map(|sigma| (sigma - control) / sampling)
     }
@@ -90,7 +87,7 @@ where
         source: &mut U,
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
-        let mut weights = incoming;
+        let (mut weights, unit) = centred(incoming);
         // An empty control takes no variate.
         let has_control = self.control.optical_thickness(0.0, self.control.length()) > 0.0;
         let control = if has_control { self.control.invert(0.0, source.next_exponential()) } else { None };
@@ -106,12 +103,13 @@ where
             let probability = collides / (collides + passes);
             if source.next_uniform() < probability {
                 // Divided in this order, a gray flight keeps a weight of exactly 1.
-                let weights = std::array::from_fn(|l| weights[l] * (ratios[l] / probability));
+                let weights = std::array::from_fn(|l| weights[l] * (ratios[l] / probability) * unit);
                 return SpectralFlight::Collided { distance: s, weights };
             }
             let probability = passes / (collides + passes);
             weights = std::array::from_fn(|l| weights[l] * ((1.0 - ratios[l]) / probability));
         }
+        let weights = weights.map(|weight| weight * unit);
         match control {
             Some(distance) => SpectralFlight::Collided { distance, weights },
             None => SpectralFlight::Escaped { weights },
@@ -121,140 +119,20 @@ where
     #[inline]
     fn admits(&self, _field: &F, s: f64, sigma_t: &[f64; N]) -> bool {
         let control = self.control.sigma_t(s);
-        self.sampling.sigma_t(s) > 0.0 || sigma_t.iter().all(|&sigma| sigma == control)
-    }
-}
-
-/// The event probabilities at one place, with the max scheme.
-struct Events {
-    control: f64,
-    sampling: f64,
-    /// Of the wavelength in question.
-    ratio: f64,
-    collides: f64,
-    passes: f64,
-}
-
-impl<R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTracking<MaxScheme, R, C> {
-    fn events<F: SpectralExtinction<N>, const N: usize>(&self, field: &Wavelength<F, N>, s: f64) -> Events {
-        let (control, sampling) = (self.control.sigma_t(s), self.sampling.sigma_t(s));
-        if sampling == 0.0 {
-            return Events { control, sampling, ratio: 0.0, collides: 0.0, passes: 1.0 };
-        }
-        let ratios = self.ratios(s, &field.spectrum().sigma_t(s));
-        let [collides, passes] = MaxScheme.sizes(&[1.0; N], &ratios);
-        let sum = collides + passes;
-        let ratio = ratios[field.index()];
-        Events { control, sampling, ratio, collides: collides / sum, passes: passes / sum }
-    }
-}
-
-impl Events {
-    /// σ_samp times the k-th moment of the weight of a collision, k = 1 … 8.
-    fn collided(&self) -> [f64; HIGHEST_MOMENT] {
-        moments(self.sampling, self.ratio, self.collides)
-    }
-
-    /// d ln M_k/ds.
-    fn growth(&self) -> [f64; HIGHEST_MOMENT] {
-        moments(self.sampling, 1.0 - self.ratio, self.passes).map(|rate| rate - self.sampling - self.control)
-    }
-}
-
-/// rate · probability · (factor/probability)^k; nothing where the event has no probability.
-fn moments(rate: f64, factor: f64, probability: f64) -> [f64; HIGHEST_MOMENT] {
-    if probability == 0.0 {
-        return [0.0; HIGHEST_MOMENT];
-    }
-    powers(factor / probability).map(|power| rate * probability * power)
-}
-
-impl<F, R, C, const N: usize> ClosedForm<Wavelength<F, N>> for SpectralTracking<MaxScheme, R, C>
-where
-    F: SpectralExtinction<N> + Copy,
-    R: InvertOpticalThickness,
-    C: InvertOpticalThickness,
-{
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        let field = *quadrature.field();
-        quadrature.integrate_nested(
-            tolerance,
-            |s, _| self.events(&field, s).growth(),
-            |s, _, growth| {
-                let (events, scores) = (self.events(&field, s), powers(score(s)));
-                let collided = events.collided();
-                std::array::from_fn(|i| (events.control + collided[i]) * growth[i].exp() * scores[i])
-            },
-        )
-    }
-
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        let field = *quadrature.field();
-        quadrature.integrate(tolerance, |s, _| self.events(&field, s).growth()).value.map(f64::exp)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        let field = *quadrature.field();
-        Some(lookups_of_a_race(quadrature, tolerance, &|s, _| {
-            let events = self.events(&field, s);
-            [events.control, events.sampling * events.collides, events.sampling * events.passes]
-        }))
-    }
-}
-
-/// Within 0 ≤ σ_l − c ≤ σ_samp for every l. Of the weights only the mean has a closed form, the rest is NaN; for look-ups
-/// see [`super::HeroWavelength`].
-impl<F, R, C, const N: usize> ClosedForm<Wavelength<F, N>> for SpectralTracking<AverageScheme, R, C>
-where
-    F: SpectralExtinction<N> + Copy,
-    R: InvertOpticalThickness,
-    C: InvertOpticalThickness,
-{
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        super::hero::mean_of_collisions(quadrature, tolerance, score)
-    }
-
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        super::hero::mean_of_escapes(quadrature, tolerance)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        Some(super::hero::lookups_of_a_mixture(quadrature, tolerance, &self.control, &self.sampling))
+        let is_control = |&sigma: &f64| (sigma - control).abs() <= rounding_of_difference(sigma, control);
+        self.sampling.sigma_t(s) > 0.0 || sigma_t.iter().all(is_control)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Flight;
+    use crate::spectral::{AverageScheme, MaxScheme};
+    use crate::{ClosedForm, Flight};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseConstant, Profiles, Scaled};
+    use fairflight_media::{
+        Constant, PiecewiseConstant, Profiles, RayQuadrature, Scaled, Tolerance, Wavelength,
+    };
     use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
 
     fn constant(sigma: f64) -> Constant {

@@ -2,15 +2,17 @@
 
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, FieldError, PiecewiseConstant, PiecewiseLinear, Vacuum};
 use fairflight_transmittance::{Explorers, Offset, RayMarching, Tracking};
 use std::sync::Arc;
 
-/// Samples of a quick run: of a walk that survives every collision (its law is known in full); and of one that ends, whose
-/// look-ups have a skewed law of which only the mean is known: a skewness of 2 needs 3.5e5 of them.
+/// Samples of a quick run, of walks whose laws are known in full: more where closed moments ask for them.
 const SURVIVING: u64 = 80_000;
-pub(super) const ENDING: u64 = 500_000;
+pub(super) const ENDING: u64 = 160_000;
+/// Flights of a line integral of several, whose look-ups have a skewed law of which only the mean is known.
+const SPLIT: u64 = 800_000;
 
 /// A control and a sampling extinction.
 type Tracker<C, R> = Tracking<DoubleParticle, C, R>;
@@ -75,14 +77,17 @@ pub(super) fn jittered<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
 
 /// The estimators that need 0 ≤ σ_t ≤ the field's own majorant, the line integral with each of `splits`.
 pub(super) fn of_positive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, splits: &[u32]) -> Vec<Check> {
-    let mut checks = vec![add(specimen, "woodcock", Law::Transmittance, ENDING, Specimen::woodcock)];
+    let mut checks = vec![
+        add(specimen, "woodcock", Law::Transmittance, ENDING, Specimen::woodcock).about([Kind::Woodcock]),
+    ];
     for &splits in splits {
         let name = format!("line_integral_{splits}");
         // The look-ups of n flights are less skewed than those of one.
-        let samples = ENDING / u64::from(splits);
-        checks.push(add(specimen, &name, Law::Transmittance, samples, move |specimen, run| {
+        let samples = if splits == 1 { ENDING } else { SPLIT / u64::from(splits) };
+        let check = add(specimen, &name, Law::Transmittance, samples, move |specimen, run| {
             specimen.line_integral(splits, run)
-        }));
+        });
+        checks.push(check.about([Kind::LineIntegral]));
     }
     checks
 }
@@ -102,6 +107,7 @@ where
         Ok(tracking) => specimen.tracking(&tracking, run),
         Err(error) => crate::CheckResult::exact(false, format!("refused: {error}")),
     })
+    .about([Kind::DoubleParticle])
 }
 
 fn marching<F: SpecimenField>(specimen: &Arc<Specimen<F>>, name: &str, offset: Offset) -> Check {
@@ -111,6 +117,11 @@ fn marching<F: SpecimenField>(specimen: &Arc<Specimen<F>>, name: &str, offset: O
             Ok(estimator) => specimen.ray_marching(&estimator, run),
             Err(error) => crate::CheckResult::exact(false, format!("refused: {error}")),
         }
+    })
+    .about(match offset {
+        Offset::Fixed => vec![Kind::RayMarching],
+        // One comb with a random shift, by its other name.
+        Offset::Jittered => vec![Kind::RayMarching, Kind::Naive],
     })
 }
 

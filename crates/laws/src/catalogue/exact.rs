@@ -3,7 +3,7 @@
 use super::estimators::add;
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::{CheckResult, collision};
+use crate::{CheckResult, Kind, collision};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version, Woodcock};
 use fairflight_media::{Constant, Vacuum};
 use fairflight_transmittance::Tracking;
@@ -16,10 +16,10 @@ pub(super) fn collision_models() -> Vec<Check> {
     let single = |version| move |albedo| SingleParticle { version, albedo };
     vec![
         model("woodcock", |albedo| Woodcock { albedo }),
-        model("double particle", |albedo| DoubleParticle { albedo }),
-        model("terminating", single(Version::Terminating)),
-        model("non-terminating", single(Version::NonTerminating)),
-        model("adaptive", single(Version::Adaptive)),
+        model("double particle", |albedo| DoubleParticle { albedo }).about([Kind::DoubleParticle]),
+        model("terminating", single(Version::Terminating)).about([Kind::SingleParticle]),
+        model("non-terminating", single(Version::NonTerminating)).about([Kind::SingleParticle]),
+        model("adaptive", single(Version::Adaptive)).about([Kind::SingleParticle]),
     ]
 }
 
@@ -60,16 +60,20 @@ pub(super) fn variance_checks<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> 
     vec![
         add(specimen, "variance_positive_difference", Law::Variance, SAMPLES, move |s, run| {
             mild(0.5, 8.0, run, s)
-        }),
+        })
+        .about([Kind::DoubleParticle]),
         add(specimen, "variance_negative_difference", Law::Variance, SAMPLES, move |s, run| {
             mild(0.9, 8.0, run, s)
-        }),
+        })
+        .about([Kind::DoubleParticle]),
         add(specimen, "variance_without_control", Law::Variance, 3 * SAMPLES, move |s, run| {
             mild(0.0, 8.0, run, s)
-        }),
+        })
+        .about([Kind::DoubleParticle]),
         add(specimen, "variance_non_terminating", Law::Variance, 2 * SAMPLES, move |s, run| {
             single(Version::NonTerminating, run, s)
-        }),
+        })
+        .about([Kind::SingleParticle]),
     ]
 }
 

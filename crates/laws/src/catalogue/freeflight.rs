@@ -169,5 +169,5 @@ where
     let (mut quadrature, _) = specimen.prepared();
     quadrature.split_at(borders);
     let expected = FlightExpectation::new(&mut quadrature, sampler, weights, specimen.tolerance);
-    CheckResult::of_flights(&check(&specimen.field, sampler, &expected, run))
+    CheckResult::of_flights(&check(&specimen.field, sampler, &expected, expected.sufficient(run)))
 }

@@ -4,6 +4,7 @@ use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
+use crate::Kind;
 use crate::lookups::LookupLaw;
 use fairflight_media::PiecewiseConstant;
 use fairflight_media::PiecewiseLinear;
@@ -14,7 +15,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Of a quick run: the law of the variance is that of what was chosen, of which only two moments may be known.
-const SAMPLES: u64 = 200_000;
+const SAMPLES: u64 = 80_000;
 /// Pilots that teach.
 const PILOTS: u64 = 12;
 
@@ -40,6 +41,7 @@ fn taught<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
         }
         check(specimen, &experience, run)
     })
+    .about([Kind::Hybrid])
 }
 
 /// Knowing nothing.
@@ -47,6 +49,7 @@ fn untaught<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
     add(specimen, "hybrid_without_experience", Law::Transmittance, SAMPLES, |specimen, run| {
         check(specimen, &Experience::default(), run)
     })
+    .about([Kind::Hybrid])
 }
 
 fn check<F: SpecimenField>(

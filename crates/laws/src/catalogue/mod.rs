@@ -4,12 +4,14 @@ mod cells;
 mod combs;
 mod estimators;
 mod exact;
+mod exactly;
 mod freeflight;
 mod hybrid;
 mod media;
 pub(crate) mod paths;
 mod phase;
 mod points;
+mod regular;
 mod series;
 mod single_particle;
 mod specimen;
@@ -18,6 +20,20 @@ mod vpl;
 
 use crate::{CheckResult, Kind, Run, hard_cases, twins};
 use fairflight_sources::derive_seed;
+use fairflight_stats::sidak_level;
+
+/// False alarm of all checks together: one in a million.
+pub const FAMILY_LEVEL: f64 = 1e-6;
+
+/// The number of checks that share it. More than there are: the catalogue can grow, and no check changes its level, its N or its
+/// verdict by that.
+pub const FAMILY_SIZE: usize = 1000;
+
+/// The false alarm of one check ([`sidak_level`]), whichever part of the catalogue is run.
+#[must_use]
+pub fn check_level() -> f64 {
+    sidak_level(FAMILY_LEVEL, FAMILY_SIZE)
+}
 
 /// Which law a check is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,18 +62,47 @@ pub enum Law {
     Bound,
     /// The squared energy of walks grows as their collisions say, by exact algebra.
     Growth,
+    /// A decision has its probability, a direction the density that is told, a closed form is what it stands for: without chance.
+    Exact,
     /// A wrong twin is rejected.
     WrongTwin,
     /// A hard case has its exact answer, or is refused where it must be.
     HardCase,
 }
 
+impl Law {
+    /// The name in a result.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Transmittance => "transmittance",
+            Self::Variance => "variance",
+            Self::OwnExpectation => "own_expectation",
+            Self::FreeFlight => "free_flight",
+            Self::Collision => "collision",
+            Self::Phase => "phase",
+            Self::Radiance => "radiance",
+            Self::Adjoint => "adjoint",
+            Self::Compensation => "compensation",
+            Self::Energy => "energy",
+            Self::Bound => "bound",
+            Self::Growth => "growth",
+            Self::Exact => "exact",
+            Self::WrongTwin => "wrong_twin",
+            Self::HardCase => "hard_case",
+        }
+    }
+}
+
+/// How many times as many samples a full run draws as a quick one.
+const FULL: u64 = 5;
+
 /// How thorough a run is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// Seconds for all checks: enough for every law to be testable.
     Quick,
-    /// Six times the samples.
+    /// Five times the samples.
     Full,
 }
 
@@ -65,13 +110,14 @@ pub enum Effort {
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`, `hybrid/medium/estimator`,
     /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
-    /// `phase/name`, `twin/name`, `hard/number name`.
+    /// `phase/name`, `exact/what/which`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
     pub law: Law,
     /// The estimator or model, in words.
     pub estimator: String,
-    /// The kinds of estimator that it is about; none for a check of media or rays alone.
+    /// The kinds of estimator that it draws from, and of a wrong twin the kind whose law rejects it; none for a check of flights, walks
+    /// among surfaces, phase functions or rays alone.
     pub kinds: Vec<Kind>,
     /// The medium, in words.
     pub medium: String,
@@ -88,16 +134,20 @@ impl Check {
         quick_samples: u64,
         function: impl Fn(Run) -> CheckResult + Send + Sync + 'static,
     ) -> Self {
-        let (id, estimator) = (id.into(), estimator.into());
         Self {
-            kinds: Kind::named_in(&estimator),
-            id,
+            kinds: Vec::new(),
+            id: id.into(),
             law,
-            estimator,
+            estimator: estimator.into(),
             medium: medium.into(),
             quick_samples,
             function: Box::new(function),
         }
+    }
+
+    /// The same, about these kinds of estimator: those that it draws from.
+    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
+        Self { kinds: kinds.into(), ..self }
     }
 
     /// The N of this check. A twin is rejected, and a hard case decided, at the N that it states itself.
@@ -115,13 +165,13 @@ impl Check {
                 | Law::Adjoint
                 | Law::Compensation
                 | Law::Energy,
-            ) => 6 * self.quick_samples,
+            ) => FULL * self.quick_samples,
             _ => self.quick_samples,
         }
     }
 
     /// Runs the check. Its own seed is derived from `seed` and its name, so that a check keeps its numbers when others are
-    /// added. `alpha` is its share of the false alarm: [`fairflight_stats::sidak_level`] over all checks.
+    /// added. `alpha` is its share of the false alarm: [`check_level`].
     #[must_use]
     pub fn run(&self, effort: Effort, seed: u64, alpha: f64) -> CheckResult {
         let seed = derive_seed(seed, fingerprint(&self.id));
@@ -148,6 +198,7 @@ pub fn catalogue() -> Vec<Check> {
     let mut checks = exact::collision_models();
     checks.extend(phase::phase_functions());
     checks.extend(media::on_every_medium());
+    checks.extend(regular::checks());
     checks.extend(series::series());
     checks.extend(combs::combs());
     checks.extend(cells::in_cells());
@@ -157,8 +208,9 @@ pub fn catalogue() -> Vec<Check> {
     checks.extend(points::point_sets());
     checks.extend(paths::walks_in_space());
     checks.extend(vpl::virtual_point_lights());
+    checks.extend(exactly::without_chance());
     checks.extend(twins().into_iter().map(|twin| {
-        let (id, samples) = (format!("twin/{}", twin.id), twin.samples);
+        let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {
             let rejection = twin.run(run);
             CheckResult {
@@ -170,18 +222,20 @@ pub fn catalogue() -> Vec<Check> {
                 ..CheckResult::default()
             }
         })
+        .about(kinds)
     }));
     checks.extend(hard_cases().into_iter().map(|case| {
-        let id = format!("hard/{} {}", case.number, case.title);
+        let (id, kinds) = (format!("hard/{} {}", case.number, case.title), case.kinds.clone());
         Check::new(id, Law::HardCase, case.estimator, case.title.clone(), case.samples, move |run| {
             let outcome = case.run(run);
             CheckResult {
                 holds: Some(outcome.passes),
-                samples: run.samples,
+                samples: outcome.evidence.samples.max(run.samples),
                 reason: outcome.ours,
-                ..CheckResult::default()
+                ..outcome.evidence
             }
         })
+        .about(kinds)
     }));
     checks
 }

@@ -2,7 +2,7 @@
 
 use super::media::LAWFUL;
 use super::{Check, Law};
-use crate::{CheckResult, Run, measure};
+use crate::{CheckResult, Kind, Run, measure};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, OpticalThickness, PiecewiseLinear, Vacuum};
 use fairflight_sources::{
@@ -18,7 +18,7 @@ const POINTS: u64 = 32;
 const DIMENSIONS: usize = 6;
 
 /// Replicas of a quick run.
-const REPLICAS: u64 = 6000;
+const REPLICAS: u64 = 20_000;
 
 /// All checks of point sets.
 pub(super) fn point_sets() -> Vec<Check> {
@@ -60,6 +60,7 @@ fn check<P: PointSet>(
             }
         },
     )
+    .about([Kind::DoubleParticle])
 }
 
 /// A seed for the next replica of a run.

@@ -5,8 +5,8 @@ use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::CheckResult;
 use crate::lookups::LookupLaw::{MeanOnly, Poisson, Unknown};
+use crate::{CheckResult, Kind};
 use fairflight_media::{PiecewiseConstant, PiecewiseLinear};
 use fairflight_stats::Scores;
 use fairflight_transmittance::{
@@ -37,21 +37,23 @@ fn noise() -> PiecewiseConstant {
 }
 
 /// Samples of a quick run, where all moments are known; where the shape is taken from the sample, which asks for a larger one;
-/// and for what is most skewed. The media are thin for the same reason.
+/// and for what is most skewed: 1.6 times what the shape of a sample asks for at least ([`super::paths`]). The media are thin for
+/// the same reason.
 const KNOWN: u64 = 80_000;
-const SAMPLED: u64 = 250_000;
-const SKEWED: u64 = 500_000;
+const SAMPLED: u64 = 300_000;
+const SKEWED: u64 = 900_000;
 
 /// A check of `estimator`, a function of the field that gives a result. A macro, because no bound says of a type that it is an
 /// estimator for every lifetime of an observed field.
 macro_rules! law {
-    ($specimen:expr, $name:expr, $samples:expr, $lookups:expr, $estimator:expr) => {
+    ($kind:ident, $specimen:expr, $name:expr, $samples:expr, $lookups:expr, $estimator:expr) => {
         add($specimen, $name, Law::Transmittance, $samples, move |specimen, run| {
             match $estimator(&specimen.field) {
                 Ok(estimator) => specimen.examine(&estimator, &[], |_| Scores::Unbounded, $lookups, run),
                 Err(error) => CheckResult::exact(false, format!("refused: {error}")),
             }
         })
+        .about([Kind::$kind])
     };
 }
 
@@ -59,22 +61,27 @@ fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Vec<Check> {
     type Never = std::convert::Infallible;
     let positive = specimen.field.minorant() >= 0.0;
     let mut checks = vec![
-        law!(specimen, "next_flight_ratio", SKEWED, Poisson, |_: &F| Ok::<_, Never>(NextFlight::new(
-            NextFlightVersion::Ratio
-        ))),
-        law!(specimen, "unidirectional", SKEWED, Poisson, |_: &F| Ok::<_, Never>(Unidirectional)),
-        law!(specimen, "bidirectional", SAMPLED, Poisson, |_: &F| Ok::<_, Never>(Bidirectional)),
-        law!(specimen, "adaptive_ratio", SAMPLED, Unknown, |_: &F| AdaptiveRatio::new(0.1)),
-        law!(specimen, "generalised_poisson", KNOWN, Poisson, |field: &F| {
+        law!(NextFlight, specimen, "next_flight_ratio", SKEWED, Poisson, |_: &F| Ok::<_, Never>(
+            NextFlight::new(NextFlightVersion::Ratio)
+        )),
+        law!(NextFlight, specimen, "unidirectional", SKEWED, Poisson, |_: &F| Ok::<_, Never>(Unidirectional)),
+        law!(NextFlight, specimen, "bidirectional", SAMPLED, Poisson, |_: &F| Ok::<_, Never>(Bidirectional)),
+        law!(AdaptiveRatio, specimen, "adaptive_ratio", SAMPLED, Unknown, |_: &F| AdaptiveRatio::new(0.1)),
+        law!(GeneralisedPoisson, specimen, "generalised_poisson", KNOWN, Poisson, |field: &F| {
             let thickness = field.majorant() * field.length();
             // The residual of a control of a fifth of the majorant.
             GeneralisedPoisson::new(1.2 * thickness, thickness)
         }),
     ];
     if positive {
-        checks.push(law!(specimen, "next_flight_delta", SKEWED, MeanOnly, |_: &F| Ok::<_, Never>(
-            NextFlight::new(NextFlightVersion::Delta)
-        )));
+        checks.push(law!(
+            NextFlight,
+            specimen,
+            "next_flight_delta",
+            SKEWED,
+            MeanOnly,
+            |_: &F| Ok::<_, Never>(NextFlight::new(NextFlightVersion::Delta))
+        ));
     }
     for (name, version, samples, lookups) in [
         ("p_series_cmf", PSeriesVersion::Cmf, SKEWED, MeanOnly),
@@ -82,8 +89,9 @@ fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Vec<Check> {
         ("p_series_ratio", PSeriesVersion::Ratio, KNOWN, Poisson),
         ("p_series_next_flight", PSeriesVersion::NextFlight, SKEWED, Poisson),
     ] {
-        checks
-            .push(law!(specimen, name, samples, lookups, |field: &F| PSeries::with_majorant(version, field)));
+        checks.push(law!(PSeries, specimen, name, samples, lookups, |field: &F| PSeries::with_majorant(
+            version, field
+        )));
     }
     checks
 }

@@ -3,7 +3,7 @@
 use super::estimators::{ENDING, add};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::CheckResult;
+use crate::{CheckResult, Kind};
 use fairflight_collision::{Albedo, SingleParticle, Version};
 use fairflight_media::{Constant, Vacuum};
 use fairflight_transmittance::Tracking;
@@ -58,4 +58,5 @@ fn one<F: SpecimenField>(
         let model = SingleParticle { version, albedo };
         specimen.tracking(&Tracking::new(model, Vacuum::new(length), sampling), run)
     })
+    .about([Kind::SingleParticle])
 }

@@ -1,7 +1,8 @@
 //! What came out of a run of flights, and its one line in a table.
 
 use super::FlightRefusal;
-use crate::CheckResult;
+use crate::result::{greater, normal_share};
+use crate::{CheckResult, PValue};
 use fairflight_stats::{GoodnessOfFit, Verdict};
 
 /// The verdict on one score of the flights.
@@ -54,6 +55,13 @@ impl FlightEvidence {
         parts.chain(lookups).chain(distances)
     }
 
+    fn p_values(&self) -> Vec<PValue> {
+        let scores = self.flights.iter().flat_map(|part| PValue::of_verdict(&part.verdict, part.name));
+        let lookups = self.lookups.iter().flat_map(|verdict| PValue::of_verdict(verdict, "look-ups"));
+        let distances = self.distances.iter().filter_map(|fit| PValue::of_fit(fit, "distances"));
+        scores.chain(lookups).chain(distances).collect()
+    }
+
     fn extreme(&self, z: impl Fn(&Verdict) -> Option<f64>) -> Option<f64> {
         let all = self.flights.iter().filter_map(|part| z(&part.verdict));
         all.reduce(|worst, z| if z.abs() > worst.abs() { z } else { worst })
@@ -90,6 +98,11 @@ impl CheckResult {
                 .map(|verdict| verdict.detectable_relative_bias)
                 .reduce(|least, bias| Some(least?.max(bias?)))
                 .flatten(),
+            p_values: evidence.p_values(),
+            normal_share: verdicts()
+                .chain(&evidence.lookups)
+                .map(|verdict| normal_share(verdict, evidence.samples))
+                .fold(None, greater),
             samples_needed: verdicts().filter_map(|verdict| verdict.samples_needed).reduce(f64::max),
             reason: reasons.join("; "),
         }

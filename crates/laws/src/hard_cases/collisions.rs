@@ -2,6 +2,7 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::Kind;
 use crate::collision;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{Constant, Counted, RayQuadrature, Tolerance, Vacuum};
@@ -106,64 +107,79 @@ fn a_million_collisions(weight: f64) -> Outcome {
 pub(super) fn cases() -> Vec<HardCase> {
     let mut cases = Vec::new();
     for delta in [1e-8, f64::EPSILON] {
-        cases.push(HardCase::deterministic(
-            7,
-            format!("a null probability of {delta:e} left by rounding, or 0"),
-            "single particle, all versions",
-            "mean weight 1 - r; finite",
-            "one rounding",
-            move || rounded_null(delta),
-        ));
+        cases.push(
+            HardCase::deterministic(
+                7,
+                format!("a null probability of {delta:e} left by rounding, or 0"),
+                "single particle, all versions",
+                "mean weight 1 - r; finite",
+                "one rounding",
+                move || rounded_null(delta),
+            )
+            .about([Kind::SingleParticle]),
+        );
     }
     for a in [0.0, 0.5, 1.0] {
         for (name, r) in [("1", 1.0), ("2/(1+a)", 2.0 / (1.0 + a)), ("1e-9", 1e-9), ("1e3", 1e3)] {
-            cases.push(HardCase::deterministic(
-                13,
-                format!("r = {name}, albedo {a}: variance"),
-                "single particle, all versions",
-                "szirmay-kalos-2017 eq. 19, 20",
-                "1e-11 relative",
-                move || variance_at(r, a),
-            ));
+            cases.push(
+                HardCase::deterministic(
+                    13,
+                    format!("r = {name}, albedo {a}: variance"),
+                    "single particle, all versions",
+                    "szirmay-kalos-2017 eq. 19, 20",
+                    "1e-11 relative",
+                    move || variance_at(r, a),
+                )
+                .about([Kind::SingleParticle]),
+            );
         }
     }
     for (name, r) in [("1", 1.0), ("2/(1+a)", 4.0 / 3.0), ("1e-9", 1e-9)] {
         let (tau, samples) = if r < 1e-3 { (1e-6, 2_000) } else { (1.0, 200_000) };
-        cases.push(HardCase::statistical(
-            13,
-            format!("r = {name}, albedo 0.5: mean"),
-            "single particle, non-terminating",
-            format!("exp(-{tau:e})"),
-            samples,
-            move |run| {
-                let model = SingleParticle { version: Version::NonTerminating, albedo: albedo(0.5) };
-                let sampling = Constant::new(tau / r, 1.0).expect(LAWFUL);
-                let estimator = Tracking::new(model, Vacuum::new(1.0), sampling);
-                judge_walk(&Constant::new(tau, 1.0).expect(LAWFUL), &estimator, run)
-            },
-        ));
+        cases.push(
+            HardCase::statistical(
+                13,
+                format!("r = {name}, albedo 0.5: mean"),
+                "single particle, non-terminating",
+                format!("exp(-{tau:e})"),
+                samples,
+                move |run| {
+                    let model = SingleParticle { version: Version::NonTerminating, albedo: albedo(0.5) };
+                    let sampling = Constant::new(tau / r, 1.0).expect(LAWFUL);
+                    let estimator = Tracking::new(model, Vacuum::new(1.0), sampling);
+                    judge_walk(&Constant::new(tau, 1.0).expect(LAWFUL), &estimator, run)
+                },
+            )
+            .about([Kind::SingleParticle]),
+        );
     }
-    cases.push(HardCase::deterministic(
-        13,
-        "r = 1e3, albedo 0.5: mean",
-        "single particle, non-terminating",
-        "exp(-1) = exp(sigma_samp (E[W] - 1)): the rare weight of -1500 shows in no feasible sample",
-        "1e-12 relative",
-        || {
-            let branch =
-                SingleParticle { version: Version::NonTerminating, albedo: albedo(0.5) }.transmitted(1e3);
-            Outcome::value((1e-3 * (branch.moment(1) - 1.0)).exp(), (-1.0_f64).exp(), 1e-12)
-        },
-    ));
+    cases.push(
+        HardCase::deterministic(
+            13,
+            "r = 1e3, albedo 0.5: mean",
+            "single particle, non-terminating",
+            "exp(-1) = exp(sigma_samp (E[W] - 1)): the rare weight of -1500 shows in no feasible sample",
+            "1e-12 relative",
+            || {
+                let branch =
+                    SingleParticle { version: Version::NonTerminating, albedo: albedo(0.5) }.transmitted(1e3);
+                Outcome::value((1e-3 * (branch.moment(1) - 1.0)).exp(), (-1.0_f64).exp(), 1e-12)
+            },
+        )
+        .about([Kind::SingleParticle]),
+    );
     for weight in [1.0 - 1e-3, 1.0 + 1e-3] {
-        cases.push(HardCase::deterministic(
-            20,
-            format!("1e6 collisions of weight {weight} in one walk"),
-            "double particle",
-            "exp(n ln W + 1e6 (1 - W)), by logarithms",
-            "1e-8 relative: 1e6 roundings",
-            move || a_million_collisions(weight),
-        ));
+        cases.push(
+            HardCase::deterministic(
+                20,
+                format!("1e6 collisions of weight {weight} in one walk"),
+                "double particle",
+                "exp(n ln W + 1e6 (1 - W)), by logarithms",
+                "1e-8 relative: 1e6 roundings",
+                move || a_million_collisions(weight),
+            )
+            .about([Kind::DoubleParticle]),
+        );
     }
     cases
 }

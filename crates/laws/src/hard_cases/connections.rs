@@ -81,7 +81,7 @@ fn compensated(scene: &Local, placement: Placement, run: crate::Run) -> Outcome 
     let reference = scene.reference();
     let verdict = scene.check((walk(), Regular), &correction, &reference, run);
     match verdict {
-        Ok(verdict) => Outcome::judged(&CheckResult::of_verdict(&verdict, run.samples), reference.mean),
+        Ok(verdict) => Outcome::judged(CheckResult::of_verdict(&verdict, run.samples), reference.mean),
         Err(error) => Outcome::said(false, error.to_string()),
     }
 }

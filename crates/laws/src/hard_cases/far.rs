@@ -2,6 +2,7 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Bounds, Constant, Homogeneous, OpticalThickness, PiecewiseConstant, Ray, Vacuum};
 use fairflight_sources::Seeded;
@@ -45,7 +46,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             "exp(-1)",
             "1e-12: the input is exact",
             move || in_space(cube(), DVec3::X, 1e-12),
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         HardCase::deterministic(
             11,
             "a ball of 1e-3 seen from 1e6, obliquely",
@@ -53,7 +55,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             "exp(-1)",
             "1e-7: the conditioning of the input",
             move || in_space(ball(), dvec3(0.3, -0.7, 0.64), 1e-7),
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         HardCase::deterministic(
             11,
             "a profile with a feature of 1e-3 at 1e6",
@@ -68,7 +71,8 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let walk = Tracking::new(model, field.clone(), rate);
                 Outcome::value(walk.estimate(&field, &mut Seeded::new(11)), (-width / SIZE).exp(), 1e-12)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         HardCase::statistical(
             11,
             "a profile with a feature of 1e-3 at 1e6, no control",
@@ -81,6 +85,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let model = DoubleParticle { albedo: Albedo::default() };
                 judge_walk(&profile(), &Tracking::new(model, Vacuum::new(FAR + 1.0), rate), run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
     ]
 }

@@ -3,7 +3,7 @@
 use super::{HardCase, LAWFUL, Outcome};
 use crate::lookups::LookupLaw;
 use crate::transmittance::check;
-use crate::{Expectation, Run, Truth};
+use crate::{Expectation, Kind, Run, Truth};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, RayQuadrature, Tolerance, Vacuum};
 use fairflight_stats::Scores;
@@ -51,6 +51,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 10_000,
                 move |run| tail(j, run),
             )
+            .about([Kind::DoubleParticle])
         })
         .collect()
 }

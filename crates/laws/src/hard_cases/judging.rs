@@ -34,7 +34,7 @@ where
         scores: tracking(estimator.model(), ratios, main, unit),
         lookups: if survives { LookupLaw::Poisson } else { LookupLaw::MeanOnly },
     };
-    let evidence = check(field, estimator, &expected, run);
+    let evidence = check(field, estimator, &expected, expected.sufficient(run));
     let mean = evidence.as_ref().ok().and_then(|evidence| evidence.estimates.mean()).unwrap_or(f64::NAN);
-    Outcome::judged(&CheckResult::of_evidence(&evidence), mean / unit.scale())
+    Outcome::judged(CheckResult::of_evidence(&evidence), mean / unit.scale())
 }

@@ -18,7 +18,7 @@ mod vacuum;
 mod variates;
 mod voxel_faces;
 
-use crate::{CheckResult, Run};
+use crate::{CheckResult, Kind, Run};
 
 /// What came of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,8 @@ pub struct Outcome {
     pub passes: bool,
     /// Whether it is a refusal.
     pub refused: bool,
+    /// What a judged run found: samples, scores, p-values and power. None for a case that is evaluated exactly.
+    pub evidence: CheckResult,
 }
 
 impl Outcome {
@@ -37,27 +39,25 @@ impl Outcome {
         let granted = tolerance * if exact == 0.0 { 1.0 } else { exact.abs() };
         // Equality first: it also covers a tolerance that underflows.
         let passes = ours == exact || (ours - exact).abs() <= granted;
-        Self { ours: number(ours), passes, refused: false }
+        Self::said(passes, number(ours))
     }
 
     /// Something else than one value.
     fn said(passes: bool, ours: impl Into<String>) -> Self {
-        Self { ours: ours.into(), passes, refused: false }
+        Self { ours: ours.into(), passes, refused: false, evidence: CheckResult::default() }
     }
 
     /// A refusal, which is what was wanted.
     fn refusal(text: impl std::fmt::Display) -> Self {
-        Self { ours: format!("refused: {text}"), passes: true, refused: true }
+        Self { refused: true, ..Self::said(true, format!("refused: {text}")) }
     }
 
     /// A run judged by its law.
-    fn judged(result: &CheckResult, mean: f64) -> Self {
+    fn judged(result: CheckResult, mean: f64) -> Self {
         let z = result.mean_z.map_or(String::new(), |z| format!(", z = {z:.2}"));
-        let ours = match result.holds {
-            Some(true) => format!("{mean:.6}{z}"),
-            _ => format!("{mean:.6}{z}: {}", result.reason),
-        };
-        Self { ours, passes: result.holds == Some(true), refused: false }
+        let passes = result.holds == Some(true);
+        let ours = if passes { format!("{mean:.6}{z}") } else { format!("{mean:.6}{z}: {}", result.reason) };
+        Self { evidence: result, ..Self::said(passes, ours) }
     }
 }
 
@@ -78,6 +78,8 @@ pub struct HardCase {
     pub title: String,
     /// Which of ours is tried.
     pub estimator: &'static str,
+    /// The kinds of estimator that it draws from.
+    pub kinds: Vec<Kind>,
     /// The exact answer and how it is known.
     pub exact: String,
     /// How near is right.
@@ -101,6 +103,7 @@ impl HardCase {
             number,
             title: title.into(),
             estimator,
+            kinds: Vec::new(),
             exact: exact.into(),
             tolerance,
             samples: 0,
@@ -121,11 +124,17 @@ impl HardCase {
             number,
             title: title.into(),
             estimator,
+            kinds: Vec::new(),
             exact: exact.into(),
             tolerance: "the law, at its share of the false alarm",
             samples,
             function: Box::new(function),
         }
+    }
+
+    /// The same, about these kinds of estimator.
+    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
+        Self { kinds: kinds.into(), ..self }
     }
 
     /// Evaluates the case.

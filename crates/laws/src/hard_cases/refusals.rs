@@ -3,13 +3,11 @@
 use super::{HardCase, LAWFUL, Outcome};
 use crate::lookups::LookupLaw;
 use crate::transmittance::{Observed, check};
-use crate::{Expectation, Refusal, Run, Truth};
+use crate::{Expectation, Kind, Refusal, Run, Truth};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, Extinction, Majorant, Vacuum};
 use fairflight_stats::Scores;
-use fairflight_transmittance::{
-    HIGHEST_MOMENT, LineIntegral, Theory, Tracking, TransmittanceEstimator, Woodcock,
-};
+use fairflight_transmittance::{LineIntegral, Theory, Tracking, TransmittanceEstimator, Woodcock};
 
 /// σ_t = 0.5 but for the second half of a ray of length 2, with a declared majorant of 1.
 #[derive(Clone, Copy, Debug)]
@@ -32,15 +30,8 @@ impl Majorant for Faulty {
 
 /// What is expected does not matter: nothing is judged before every look-up was lawful.
 fn expectation() -> Expectation {
-    let theory = Theory {
-        relative_mean: 1.0,
-        relative_central: [f64::NAN; HIGHEST_MOMENT - 1],
-        log_relative_variance: f64::NAN,
-        relative_variance_error: 0.0,
-        relative_variance_bound: f64::INFINITY,
-        lookups: 1.0,
-    };
     let truth = Truth { optical_thickness: 1.0, error: 0.0 };
+    let theory = Theory::mean_only(1.0);
     Expectation { truth, theory, scores: Scores::Unbounded, lookups: LookupLaw::MeanOnly }
 }
 
@@ -65,21 +56,22 @@ pub(super) fn cases() -> Vec<HardCase> {
         ("1.5 above its majorant 1", 1.5),
     ];
     for (name, value) in faults {
-        let mut add = |estimator: &'static str, function: fn(&Faulty) -> Outcome| {
-            cases.push(HardCase::deterministic(
+        let mut add = |estimator: &'static str, kind: Kind, function: fn(&Faulty) -> Outcome| {
+            let case = HardCase::deterministic(
                 15,
                 format!("a medium that returns {name}: {estimator}"),
                 estimator,
                 "an error with the point",
                 "refused",
                 move || function(&Faulty(value)),
-            ));
+            );
+            cases.push(case.about([kind]));
         };
-        add("woodcock", |field| tried(field, Woodcock));
-        add("line integral", |field| tried(field, LineIntegral::new(4).expect(LAWFUL)));
+        add("woodcock", Kind::Woodcock, |field| tried(field, Woodcock));
+        add("line integral", Kind::LineIntegral, |field| tried(field, LineIntegral::new(4).expect(LAWFUL)));
         // The double particle model has no majorant to be violated.
         if !value.is_finite() {
-            add("double particle", |field| {
+            add("double particle", Kind::DoubleParticle, |field| {
                 let model = DoubleParticle { albedo: Albedo::default() };
                 let sampling = Constant::new(1.0, 2.0).expect(LAWFUL);
                 tried(field, &Tracking::new(model, Vacuum::new(2.0), sampling))

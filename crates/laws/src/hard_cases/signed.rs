@@ -2,6 +2,7 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{Constant, PiecewiseConstant, Vacuum};
 use fairflight_sources::Seeded;
@@ -27,7 +28,8 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(0.5, 2.0));
                 judge_walk(&constant(1.0, 2.0), &estimator, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         HardCase::statistical(
             3,
             "sigma_samp 0.5 below sigma_t 1, length 2, albedo 0",
@@ -39,7 +41,8 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let estimator = Tracking::new(model, Vacuum::new(2.0), constant(0.5, 2.0));
                 judge_walk(&constant(1.0, 2.0), &estimator, run)
             },
-        ),
+        )
+        .about([Kind::SingleParticle]),
         HardCase::statistical(
             4,
             "extinction 1 then -0.5, length 1 each",
@@ -51,7 +54,8 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(2.0, 2.0));
                 judge_walk(&field, &estimator, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         HardCase::statistical(
             5,
             "extinction -0.5, length 2",
@@ -62,7 +66,8 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(2.0, 2.0));
                 judge_walk(&constant(-0.5, 2.0), &estimator, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         HardCase::deterministic(
             5,
             "extinction -0.5, length 2, as its own control",
@@ -74,6 +79,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 let estimator = Tracking::new(double_particle(), field, constant(1.0, 2.0));
                 Outcome::value(estimator.estimate(&field, &mut Seeded::new(5)), 1.0_f64.exp(), 0.0)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
     ]
 }

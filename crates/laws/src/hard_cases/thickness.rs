@@ -2,6 +2,7 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, PiecewiseConstant};
 use fairflight_sources::Seeded;
@@ -21,7 +22,7 @@ fn thickness(tau: f64) -> Outcome {
     let outcome = Outcome::value(walk, exact, 0.0);
     let passes = outcome.passes && line == exact;
     let ours = if exact == 0.0 { format!("0 (underflow of exp(-{tau}))") } else { outcome.ours };
-    Outcome { ours, passes, refused: false }
+    Outcome::said(passes, ours)
 }
 
 /// σ_t = 1e6 on 1e-6 of the ray.
@@ -32,39 +33,48 @@ fn spike() -> PiecewiseConstant {
 pub(super) fn cases() -> Vec<HardCase> {
     let mut cases = Vec::new();
     for tau in [1e-12_f64, 1e-3, 1.0, 50.0, 700.0, 800.0, 1e6] {
-        cases.push(HardCase::deterministic(
-            8,
-            format!("optical thickness {tau:e}"),
-            "double particle with the field as control, line integral in the field as majorant",
-            format!("exp(-tau) = {:e}", (-tau).exp()),
-            "exact",
-            move || thickness(tau),
-        ));
+        cases.push(
+            HardCase::deterministic(
+                8,
+                format!("optical thickness {tau:e}"),
+                "double particle with the field as control, line integral in the field as majorant",
+                format!("exp(-tau) = {:e}", (-tau).exp()),
+                "exact",
+                move || thickness(tau),
+            )
+            .about([Kind::DoubleParticle, Kind::LineIntegral]),
+        );
     }
-    cases.push(HardCase::deterministic(
-        9,
-        "sigma_t = 1e6 on 1e-6 of the ray, as its own control",
-        "double particle",
-        "exp(-1)",
-        "1e-10: the edges are rounded",
-        || {
-            let field = spike();
-            let sampling = Constant::new(10.0, 1.0).expect(LAWFUL);
-            let walk = Tracking::new(double_particle(), field.clone(), sampling);
-            Outcome::value(walk.estimate(&field, &mut Seeded::new(9)), (-1.0_f64).exp(), 1e-10)
-        },
-    ));
-    cases.push(HardCase::statistical(
-        9,
-        "sigma_t = 1e6 on 1e-6 of the ray, no control",
-        "double particle, sigma_samp 4e6 on the spike and 0 elsewhere",
-        "exp(-1)",
-        100_000,
-        |run| {
-            let rate = PiecewiseConstant::new(vec![0.0, 0.5, 0.500_001, 1.0], vec![0.0, 4e6, 0.0]);
-            let none = Constant::new(0.0, 1.0).expect(LAWFUL);
-            judge_walk(&spike(), &Tracking::new(double_particle(), none, rate.expect(LAWFUL)), run)
-        },
-    ));
+    cases.push(
+        HardCase::deterministic(
+            9,
+            "sigma_t = 1e6 on 1e-6 of the ray, as its own control",
+            "double particle",
+            "exp(-1)",
+            "1e-10: the edges are rounded",
+            || {
+                let field = spike();
+                let sampling = Constant::new(10.0, 1.0).expect(LAWFUL);
+                let walk = Tracking::new(double_particle(), field.clone(), sampling);
+                Outcome::value(walk.estimate(&field, &mut Seeded::new(9)), (-1.0_f64).exp(), 1e-10)
+            },
+        )
+        .about([Kind::DoubleParticle]),
+    );
+    cases.push(
+        HardCase::statistical(
+            9,
+            "sigma_t = 1e6 on 1e-6 of the ray, no control",
+            "double particle, sigma_samp 4e6 on the spike and 0 elsewhere",
+            "exp(-1)",
+            100_000,
+            |run| {
+                let rate = PiecewiseConstant::new(vec![0.0, 0.5, 0.500_001, 1.0], vec![0.0, 4e6, 0.0]);
+                let none = Constant::new(0.0, 1.0).expect(LAWFUL);
+                judge_walk(&spike(), &Tracking::new(double_particle(), none, rate.expect(LAWFUL)), run)
+            },
+        )
+        .about([Kind::DoubleParticle]),
+    );
     cases
 }

@@ -1,6 +1,7 @@
 //! Rows 1, 2 and 12: nothing on the ray, nothing of the ray, next to nothing of the ray.
 
 use super::{HardCase, LAWFUL, Outcome};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Bounded, Bounds, Clip, Constant, Homogeneous, OpticalThickness, Ray, Vacuum};
 use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
@@ -76,23 +77,29 @@ fn clipped(origin: DVec3, direction: DVec3, length: Option<f64>, exact: f64, tol
 }
 
 pub(super) fn cases() -> Vec<HardCase> {
-    let mut cases = vec![HardCase::deterministic(
-        1,
-        "sigma_t = 0 on a ray of length 1e300, majorant and sigma_samp 0",
-        "woodcock, double particle, line integral",
-        "1 (nothing attenuates)",
-        "exact",
-        empty_ray,
-    )];
-    for thickness in [88.0, 745.0, 2000.0] {
-        cases.push(HardCase::deterministic(
-            2,
-            format!("nothing on the ray, a majorant of optical thickness {thickness}"),
+    let mut cases = vec![
+        HardCase::deterministic(
+            1,
+            "sigma_t = 0 on a ray of length 1e300, majorant and sigma_samp 0",
             "woodcock, double particle, line integral",
             "1 (nothing attenuates)",
-            "one rounding",
-            move || beside_a_dense_region(thickness),
-        ));
+            "exact",
+            empty_ray,
+        )
+        .about([Kind::Woodcock, Kind::DoubleParticle, Kind::LineIntegral]),
+    ];
+    for thickness in [88.0, 745.0, 2000.0] {
+        cases.push(
+            HardCase::deterministic(
+                2,
+                format!("nothing on the ray, a majorant of optical thickness {thickness}"),
+                "woodcock, double particle, line integral",
+                "1 (nothing attenuates)",
+                "one rounding",
+                move || beside_a_dense_region(thickness),
+            )
+            .about([Kind::Woodcock, Kind::DoubleParticle, Kind::LineIntegral]),
+        );
     }
     // Title, origin, direction, length of the ray, length inside, tolerance.
     type Clipping = (&'static str, DVec3, DVec3, Option<f64>, f64, f64);
@@ -109,14 +116,17 @@ pub(super) fn cases() -> Vec<HardCase> {
     ];
     for (title, origin, direction, length, inside, tolerance) in clips {
         let exact = f64::exp(-0.5 * inside);
-        cases.push(HardCase::deterministic(
-            12,
-            title,
-            "clipped ray, double particle",
-            format!("exp(-0.5 * {inside}), the length inside by hand"),
-            if tolerance == 0.0 { "exact" } else { "a few roundings" },
-            move || clipped(origin, direction, length, exact, tolerance),
-        ));
+        cases.push(
+            HardCase::deterministic(
+                12,
+                title,
+                "clipped ray, double particle",
+                format!("exp(-0.5 * {inside}), the length inside by hand"),
+                if tolerance == 0.0 { "exact" } else { "a few roundings" },
+                move || clipped(origin, direction, length, exact, tolerance),
+            )
+            .about([Kind::DoubleParticle]),
+        );
     }
     cases
 }

@@ -1,17 +1,24 @@
 //! Row 14: the variates 0 and 1 − 2^-53 in every sampler.
 
 use super::{HardCase, LAWFUL, Outcome};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version, Woodcock as WoodcockModel};
 use fairflight_freeflight::{
     Flight, FreeFlight, Inversion, Newton, Regular, Tracking as FlightTracking, Woodcock as WoodcockFlight,
 };
-use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, PiecewiseLinear, Vacuum};
+use fairflight_media::{
+    Bounded, Constant, Extinction, InCells, IntervalBounds, PiecewiseConstant, PiecewiseLinear, Vacuum,
+};
 use fairflight_sources::{LARGEST_VARIATE, UniformSource};
 use fairflight_transmittance::{
-    LineIntegral, Offset, RayMarching, Tracking, TransmittanceEstimator, Woodcock,
+    AdaptiveRatio, Bidirectional, Comb, CombShape, Experience, GeneralisedPoisson, Hybrid, Jackknife,
+    JitteredRatio, JitteredRatioInCells, LineIntegral, NextFlight, NextFlightVersion, Offset, PSeries,
+    PSeriesVersion, ProgressiveMajorant, RayMarching, Regular as ClosedForm, ResidualCells, Roulette,
+    Telescoping, Tracking, TransmittanceEstimator, UnbiasedRayMarching, Unidirectional, Woodcock,
 };
 
-/// One end of the lattice for a while, then the other: a walk of flights of length 0 would never end.
+/// One end of the lattice for a while, then its middle: a walk of flights of length 0 would never end, nor would a roulette that
+/// always goes on.
 struct End {
     variate: f64,
     left: u32,
@@ -20,7 +27,7 @@ struct End {
 impl UniformSource for End {
     fn next_uniform(&mut self) -> f64 {
         if self.left == 0 {
-            return LARGEST_VARIATE;
+            return 0.5;
         }
         self.left -= 1;
         self.variate
@@ -34,6 +41,11 @@ fn every_sampler(variate: f64) -> Outcome {
     let albedo = Albedo::new(0.5).expect(LAWFUL);
     let sampling = Constant::new(0.5, 3.0).expect(LAWFUL);
     let none = Vacuum::new(3.0);
+    let series = |version| PSeries::new(version, 3.0).expect(LAWFUL);
+    let comb = Comb::new(4, CombShape::EndpointMatched).expect(LAWFUL);
+    let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
+    let in_cells = InCells::new(tent.clone(), tent.equal_cells(3)).expect(LAWFUL);
+    let hybrid = Hybrid::choose(&Experience::default(), 3.0, 3.0, Hybrid::USUAL_BUDGET);
     for left in 1..5 {
         let source = || End { variate, left };
         let single = |version| Tracking::new(SingleParticle { version, albedo }, none, sampling);
@@ -49,6 +61,27 @@ fn every_sampler(variate: f64) -> Outcome {
             LineIntegral::new(1).expect(LAWFUL).estimate(&bounded, &mut source()),
             LineIntegral::new(3).expect(LAWFUL).estimate(&bounded, &mut source()),
             RayMarching::new(4, Offset::Jittered).expect(LAWFUL).estimate(&field, &mut source()),
+            ClosedForm.estimate(&field, &mut source()),
+            ProgressiveMajorant::new(0.3).expect(LAWFUL).estimate(&field, &mut source()),
+            NextFlight::new(NextFlightVersion::Delta).estimate(&bounded, &mut source()),
+            NextFlight::new(NextFlightVersion::Ratio).estimate(&bounded, &mut source()),
+            Unidirectional.estimate(&bounded, &mut source()),
+            Bidirectional.estimate(&bounded, &mut source()),
+            series(PSeriesVersion::Cmf).estimate(&bounded, &mut source()),
+            series(PSeriesVersion::Cumulative).estimate(&bounded, &mut source()),
+            series(PSeriesVersion::Ratio).estimate(&bounded, &mut source()),
+            series(PSeriesVersion::NextFlight).estimate(&bounded, &mut source()),
+            GeneralisedPoisson::new(3.6, 3.0).expect(LAWFUL).estimate(&bounded, &mut source()),
+            AdaptiveRatio::new(0.1).expect(LAWFUL).estimate(&bounded, &mut source()),
+            UnbiasedRayMarching::new(comb, Roulette::KETTUNEN).estimate(&tent, &mut source()),
+            Jackknife::new(comb).estimate(&tent, &mut source()),
+            Telescoping::new(4, 0.8, CombShape::EndpointMatched)
+                .expect(LAWFUL)
+                .estimate(&tent, &mut source()),
+            JitteredRatio::new(0.5).expect(LAWFUL).estimate(&bounded, &mut source()),
+            JitteredRatioInCells::new(0.5).expect(LAWFUL).estimate(&in_cells, &mut source()),
+            ResidualCells::default().estimate(&in_cells, &mut source()),
+            hybrid.estimate(&bounded, &mut source()),
         ];
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
             return Outcome::said(false, format!("{value}"));
@@ -110,7 +143,8 @@ pub(super) fn cases() -> Vec<HardCase> {
                     "finite",
                     "finite",
                     move || every_sampler(variate),
-                ),
+                )
+                .about(Kind::ALL),
                 HardCase::deterministic(
                     14,
                     format!("the uniform variate {name} in a free flight"),

@@ -2,6 +2,7 @@
 
 use super::{HardCase, LAWFUL, Outcome};
 use crate::DenseLattice;
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     BoundCell, BoundGrid, BoundedInCells, Bounds, Constant, Extinction, InCells, OpticalThickness,
@@ -111,6 +112,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "exact",
             move || in_boxes(origin, direction),
         )
+        .about([Kind::ResidualCells, Kind::JitteredRatio])
     });
     let mut cases: Vec<HardCase> = rays
         .into_iter()
@@ -123,16 +125,20 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "1e-13 relative",
                 move || through(origin, direction),
             )
+            .about([Kind::DoubleParticle])
         })
         .collect();
     cases.extend(grids);
-    cases.push(HardCase::deterministic(
-        10,
-        "a collision at a discontinuity",
-        "double particle with the field as control",
-        "exp(-1)",
-        "exact",
-        discontinuity,
-    ));
+    cases.push(
+        HardCase::deterministic(
+            10,
+            "a collision at a discontinuity",
+            "double particle with the field as control",
+            "exp(-1)",
+            "exact",
+            discontinuity,
+        )
+        .about([Kind::DoubleParticle]),
+    );
     cases
 }

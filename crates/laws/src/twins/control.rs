@@ -2,6 +2,7 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Constant, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
@@ -78,7 +79,8 @@ pub(super) fn twins() -> Vec<Twin> {
                 let twin = Tracking::new(double_particle(), WithoutThickness(control), sampling);
                 judged(&field, &twin, theory, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         // Every r is zero: the estimate is exp(−τ of the fit), wherever the points fell. The z is measured.
         Twin::new(
             "double particle, explorers",
@@ -95,6 +97,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&field, &right, &also);
                 judged(&field, &FitsItsOwnWalk { sampling }, theory, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
     ]
 }

@@ -2,6 +2,7 @@
 
 use super::trial::LAWFUL;
 use super::{Evident, Rejection, Twin};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, Vacuum};
 use fairflight_sources::{Scripted, UniformSource};
@@ -21,25 +22,28 @@ impl<S: UniformSource> UniformSource for Printed<S> {
 
 /// All twins of this file.
 pub(super) fn twins() -> Vec<Twin> {
-    vec![Twin::new(
-        "woodcock",
-        "logarithm_of_zero",
-        "−log(rand()) for −ln(1 − rand()): infinite at the variate 0 (raab-2008 algorithm 1 as printed)",
-        "sigma_t = sigma_samp = 1, length 1, variate 0",
-        (0, Evident::Exactly),
-        |_| {
-            let field = Constant::new(1.0, 1.0).expect(LAWFUL);
-            let model = DoubleParticle { albedo: Albedo::default() };
-            let estimator = Tracking::new(model, Vacuum::new(1.0), field);
-            // The variate 0 is the shortest flight, which collides at once and absorbs all; printed, it is the longest.
-            let ours = estimator.estimate(&field, &mut Scripted::new([0.0, 0.75]));
-            let twin = estimator.estimate(&field, &mut Printed(Scripted::new([0.0])));
-            let depth = Printed(Scripted::new([0.0])).next_exponential();
-            let rejected = depth.is_infinite() && (ours, twin) == (0.0, 1.0);
-            Rejection::exact(
-                rejected,
-                format!("an optical distance of {depth}; the walk scores {twin} for {ours}"),
-            )
-        },
-    )]
+    vec![
+        Twin::new(
+            "woodcock",
+            "logarithm_of_zero",
+            "−log(rand()) for −ln(1 − rand()): infinite at the variate 0 (raab-2008 algorithm 1 as printed)",
+            "sigma_t = sigma_samp = 1, length 1, variate 0",
+            (0, Evident::Exactly),
+            |_| {
+                let field = Constant::new(1.0, 1.0).expect(LAWFUL);
+                let model = DoubleParticle { albedo: Albedo::default() };
+                let estimator = Tracking::new(model, Vacuum::new(1.0), field);
+                // The variate 0 is the shortest flight, which collides at once and absorbs all; printed, it is the longest.
+                let ours = estimator.estimate(&field, &mut Scripted::new([0.0, 0.75]));
+                let twin = estimator.estimate(&field, &mut Printed(Scripted::new([0.0])));
+                let depth = Printed(Scripted::new([0.0])).next_exponential();
+                let rejected = depth.is_infinite() && (ours, twin) == (0.0, 1.0);
+                Rejection::exact(
+                    rejected,
+                    format!("an optical distance of {depth}; the walk scores {twin} for {ours}"),
+                )
+            },
+        )
+        .about([Kind::DoubleParticle]),
+    ]
 }

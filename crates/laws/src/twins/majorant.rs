@@ -2,6 +2,7 @@
 
 use super::trial::{LAWFUL, judged_as_coin, theory_of};
 use super::{Evident, Rejection, Twin};
+use crate::Kind;
 use crate::transmittance::Admitted;
 use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, Watched};
 use fairflight_sources::{Scripted, UniformSource};
@@ -39,17 +40,14 @@ pub(super) fn twins() -> Vec<Twin> {
                 let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.5, 1.5]).expect(LAWFUL);
                 let theory = theory_of(&field, &Woodcock, &[]);
                 let statistical = judged_as_coin(&field, &TooLow(1.1), theory, run);
-                // A watched run does not even need statistics.
+                // A watched run does not even need statistics: a first step of 1.5/1.1 ends where sigma_t is 1.5.
                 let claimed = Bounded::new(&field, 1.1).expect(LAWFUL);
                 let admitted = Admitted { field: claimed, estimator: Woodcock };
                 let watched = Watched::new(claimed, admitted);
-                let mut source = fairflight_sources::Seeded::new(run.seed);
-                for _ in 0..100 {
-                    Woodcock.estimate(&watched, &mut source);
-                }
+                Woodcock.estimate(&watched, &mut Scripted::new([-(-1.5_f64).exp_m1(), 0.0]));
                 Rejection { rejected: statistical.rejected && watched.violation().is_some(), ..statistical }
             },
-        ),
+        ).about([Kind::Woodcock]),
         Twin::new(
             "woodcock",
             "collides_in_empty_space",
@@ -63,6 +61,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let rejected = ours == 1.0 && collides_as_printed(0.0, 1.0, 0.0);
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },
-        ),
+        ).about([Kind::Woodcock]),
     ]
 }

@@ -7,6 +7,7 @@ mod cells;
 mod collision_weights;
 mod combs;
 mod control;
+mod exactly;
 mod freeflight;
 mod line_integral;
 mod logarithm;
@@ -21,7 +22,7 @@ mod trial;
 mod variance;
 mod vpl;
 
-use crate::Run;
+use crate::{Kind, Run};
 
 /// What a check said of a twin.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +67,8 @@ pub struct Twin {
     pub id: &'static str,
     /// The estimator that it is a twin of, in words.
     pub of: &'static str,
+    /// The kind of that estimator, whose law rejects it; none for a twin of a flight, a phase function or an integrator.
+    pub kinds: Vec<Kind>,
     /// The wrong line, and who wrote it.
     pub mistake: &'static str,
     /// Where it is tried.
@@ -86,7 +89,12 @@ impl Twin {
         (samples, evident): (u64, Evident),
         function: impl Fn(Run) -> Rejection + Send + Sync + 'static,
     ) -> Self {
-        Self { of, id, mistake, profile, samples, evident, function: Box::new(function) }
+        Self { of, kinds: Vec::new(), id, mistake, profile, samples, evident, function: Box::new(function) }
+    }
+
+    /// The same, about these kinds of estimator.
+    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
+        Self { kinds: kinds.into(), ..self }
     }
 
     /// Tries the twin.
@@ -108,6 +116,7 @@ pub fn twins() -> Vec<Twin> {
     let mut all = collision_weights::twins();
     all.extend(cells::twins());
     all.extend(control::twins());
+    all.extend(exactly::twins());
     all.extend(freeflight::twins());
     all.extend(spectral::twins());
     all.extend(points::twins());

@@ -2,6 +2,7 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
+use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant, Vacuum,
@@ -57,7 +58,8 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&field(), &tracking(rate.clone()), &rate.breakpoints());
                 judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
         // E = exp(−1) for exp(−1.25); its variance is that of the first cell, exp(0.5) − 1.
         Twin::new(
             "double particle",
@@ -70,6 +72,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&field(), &twin, &with_a_hole().breakpoints());
                 judged(&field(), &twin, theory, run)
             },
-        ),
+        )
+        .about([Kind::DoubleParticle]),
     ]
 }

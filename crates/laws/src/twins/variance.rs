@@ -2,6 +2,7 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
+use crate::Kind;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
 use fairflight_media::{Constant, PiecewiseConstant, RayQuadrature, Tolerance};
 use fairflight_transmittance::{ProductLaw, Theory, Tracking};
@@ -28,21 +29,24 @@ fn of_the_whole_extinction(
 
 /// All twins of this file.
 pub(super) fn twins() -> Vec<Twin> {
-    vec![Twin::new(
-        "double particle",
-        "variance_of_the_whole_extinction",
-        "eq. 16 with sigma_t for sigma_diff: the control forgotten in the variance",
-        "sigma_t 1, 0.5 (length 1 each), control 0.5, sigma_samp 8",
-        (400_000, Evident::Variance { z: 288.0 }),
-        |run| {
-            let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.5]).expect(LAWFUL);
-            let (control, sampling) =
-                (Constant::new(0.5, 2.0).expect(LAWFUL), Constant::new(8.0, 2.0).expect(LAWFUL));
-            let model = DoubleParticle { albedo: Albedo::default() };
-            let estimator = Tracking::new(model, control, sampling);
-            let right = theory_of(&field, &estimator, &[]);
-            let wrong = of_the_whole_extinction(&field, model, 8.0, right);
-            judged(&field, &estimator, wrong, run)
-        },
-    )]
+    vec![
+        Twin::new(
+            "double particle",
+            "variance_of_the_whole_extinction",
+            "eq. 16 with sigma_t for sigma_diff: the control forgotten in the variance",
+            "sigma_t 1, 0.5 (length 1 each), control 0.5, sigma_samp 8",
+            (400_000, Evident::Variance { z: 288.0 }),
+            |run| {
+                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.5]).expect(LAWFUL);
+                let (control, sampling) =
+                    (Constant::new(0.5, 2.0).expect(LAWFUL), Constant::new(8.0, 2.0).expect(LAWFUL));
+                let model = DoubleParticle { albedo: Albedo::default() };
+                let estimator = Tracking::new(model, control, sampling);
+                let right = theory_of(&field, &estimator, &[]);
+                let wrong = of_the_whole_extinction(&field, model, 8.0, right);
+                judged(&field, &estimator, wrong, run)
+            },
+        )
+        .about([Kind::DoubleParticle]),
+    ]
 }

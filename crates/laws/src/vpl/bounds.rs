@@ -39,7 +39,7 @@ where
     let (term, heuristic) = (Term::Bounded(bound), Heuristic::Balance);
     let mut gather = Gather { world, vpls: &[], term, heuristic, walk, shadow };
     let mut source = Seeded::new(run.seed);
-    let mut greatest = 0.0_f64;
+    let (mut greatest, mut near) = (0.0_f64, 0_u64);
     for draw in 0..run.samples {
         let before = correction.vertices().1;
         let value: f64 = correction.recover(&mut gather, y, Connected::All, &mut source);
@@ -48,10 +48,15 @@ where
             return CheckResult::exact(false, format!("draw {draw}: {value} at {vertices} vertices"));
         }
         greatest = greatest.max(value / vertices.max(1.0));
+        near += u64::from(value > 0.2 * most * vertices.max(1.0));
     }
-    // A bound that nothing comes close to would prove nothing.
-    let holds = greatest > 0.2 * most;
-    let reason = format!("at most {greatest:.4} of {most} per vertex in {} draws", run.samples);
+    // A bound that nothing comes close to would prove nothing. Of the catalogue's draws one in 300 at least comes as near as
+    // this: none of 50,000 with a probability below (1 − 1/300)^50000 = 1e-72.
+    let holds = near > 0;
+    let reason = format!(
+        "at most {greatest:.4} of {most} per vertex in {} draws, {near} of them above a fifth of it",
+        run.samples
+    );
     CheckResult {
         samples: run.samples,
         detectable_relative_bias: Some(ROUNDING),
@@ -66,20 +71,21 @@ pub fn coincide(
     run: Run,
 ) -> CheckResult {
     let (mut first, mut second) = (Seeded::new(run.seed), Seeded::new(run.seed));
-    let mut sum = 0.0;
+    let mut other_than_zero = 0_u64;
     for draw in 0..run.samples {
         let (a, b) = (one(&mut first), other(&mut second));
         if a.to_bits() != b.to_bits() {
             return CheckResult::exact(false, format!("draw {draw}: {a} and {b}"));
         }
-        sum += a.abs();
+        other_than_zero += u64::from(a != 0.0);
     }
-    let reason = format!("{} draws agree to the last bit", run.samples);
+    let reason =
+        format!("{} draws agree to the last bit, {other_than_zero} of them other than zero", run.samples);
     CheckResult {
         samples: run.samples,
         detectable_relative_bias: Some(f64::EPSILON),
-        // Zeros agree with anything.
-        ..CheckResult::exact(sum > 0.0, reason)
+        // Zeros agree with anything. At least one draw in ten of the catalogue's is none: none of 500 with 0.9^500 = 1e-23.
+        ..CheckResult::exact(other_than_zero > 0, reason)
     }
 }
 

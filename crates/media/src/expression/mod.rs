@@ -11,6 +11,7 @@
 //! The parser is our own: of the ready-made ones that were tried none has this precedence, numbers with exponents, nested
 //! calls of two arguments, and the place of an error.
 
+mod enclosure;
 mod medium;
 mod names;
 mod parser;
@@ -21,6 +22,9 @@ pub use medium::ExpressionMedium;
 pub use profile::ExpressionProfile;
 
 use crate::FieldError;
+
+#[cfg(test)]
+mod certainty_tests;
 
 /// A formula that is none.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,24 +1,24 @@
 //! The names that every formula may use.
 
-use super::program::Binary;
+use super::program::{Binary, Unary};
 
 /// A function of one argument or of two.
 #[derive(Clone, Copy)]
 pub(super) enum Function {
-    Unary(fn(f64) -> f64),
+    Unary(Unary),
     Binary(Binary),
 }
 
 pub(super) const FUNCTIONS: [(&str, Function); 11] = [
-    ("sin", Function::Unary(f64::sin)),
-    ("cos", Function::Unary(f64::cos)),
-    ("tan", Function::Unary(f64::tan)),
-    ("exp", Function::Unary(f64::exp)),
-    ("ln", Function::Unary(f64::ln)),
-    ("sqrt", Function::Unary(f64::sqrt)),
-    ("abs", Function::Unary(f64::abs)),
-    ("floor", Function::Unary(f64::floor)),
-    ("ceil", Function::Unary(f64::ceil)),
+    ("sin", Function::Unary(Unary::Sin)),
+    ("cos", Function::Unary(Unary::Cos)),
+    ("tan", Function::Unary(Unary::Tan)),
+    ("exp", Function::Unary(Unary::Exp)),
+    ("ln", Function::Unary(Unary::Ln)),
+    ("sqrt", Function::Unary(Unary::Sqrt)),
+    ("abs", Function::Unary(Unary::Abs)),
+    ("floor", Function::Unary(Unary::Floor)),
+    ("ceil", Function::Unary(Unary::Ceil)),
     ("min", Function::Binary(Binary::Min)),
     ("max", Function::Binary(Binary::Max)),
 ];

@@ -10,7 +10,7 @@
 
 use super::ExpressionError;
 use super::names::{CONSTANTS, FUNCTIONS, Function, find};
-use super::program::{Binary, Program};
+use super::program::{Binary, Program, Unary};
 
 /// The program of `expression` in the named variables, which `eval` takes in this order.
 pub(super) fn parse(expression: &str, variables: &[&str]) -> Result<Program, ExpressionError> {
@@ -81,7 +81,7 @@ impl Parser<'_> {
         self.nesting -= 1;
         // The sign comes after the power: -s^2 is -(s^2).
         if negative {
-            self.program.unary(|x| -x);
+            self.program.unary(Unary::Negate);
         }
         Ok(())
     }

@@ -1,13 +1,15 @@
 //! A formula of the distance, as a profile.
 
 use super::program::Program;
-use super::{ExpressionFieldError, parser};
-use crate::{Breakpoints, Extinction, FieldError, Majorant, Minorant};
+use super::{ExpressionFieldError, enclosure, parser};
+use crate::{
+    Breakpoints, Certificate, Enclosed, Extinction, FieldError, Majorant, Minorant, Stretch, Tolerance,
+};
 
 /// σ_t(s) as a formula in the variable `s`, the distance from the start of the profile.
 ///
-/// Nothing is known of it but a majorant that somebody declares: a fact about the field, to be checked at each look-up
-/// ([`crate::Watched`]).
+/// Its integral and its range are found by interval arithmetic ([`Enclosed`]). A majorant that somebody declares is a fact about the
+/// field, to be checked at each look-up ([`crate::Watched`]).
 ///
 /// ```
 /// use fairflight_media::{Extinction, ExpressionProfile};
@@ -68,10 +70,16 @@ impl Minorant for ExpressionProfile {
     }
 }
 
-/// None: a formula does not know its kinks.
+impl Enclosed for ExpressionProfile {
+    fn enclose(&self, from: f64, to: f64) -> Stretch {
+        enclosure::stretch(&self.program, &[(0.0, 1.0)], from, to)
+    }
+}
+
+/// The borders of its [`Certificate`], made anew at each call: [`crate::Certified`] remembers them.
 impl Breakpoints for ExpressionProfile {
     fn breakpoints(&self) -> Vec<f64> {
-        Vec::new()
+        Certificate::of(self, Tolerance::TIGHT).borders
     }
 }
 

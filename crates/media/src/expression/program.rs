@@ -1,5 +1,38 @@
 //! The stack machine that evaluates a formula.
 
+/// A function of one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Unary {
+    Negate,
+    Sin,
+    Cos,
+    Tan,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Floor,
+    Ceil,
+}
+
+impl Unary {
+    #[inline]
+    fn apply(self, x: f64) -> f64 {
+        match self {
+            Self::Negate => -x,
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Sqrt => x.sqrt(),
+            Self::Abs => x.abs(),
+            Self::Floor => x.floor(),
+            Self::Ceil => x.ceil(),
+        }
+    }
+}
+
 /// An operation on two numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Binary {
@@ -44,7 +77,7 @@ impl Binary {
 enum Instruction {
     Number(f64),
     Variable(usize),
-    Unary(fn(f64) -> f64),
+    Unary(Unary),
     /// The operands are the two topmost results.
     Binary(Binary),
     /// The second operand is a number, or a variable, that needs not go over the stack.
@@ -79,9 +112,9 @@ impl Program {
         self.height += 1;
     }
 
-    pub(super) fn unary(&mut self, function: fn(f64) -> f64) {
+    pub(super) fn unary(&mut self, function: Unary) {
         match self.instructions.last_mut() {
-            Some(Instruction::Number(x)) => *x = function(*x),
+            Some(Instruction::Number(x)) => *x = function.apply(*x),
             _ => self.instructions.push(Instruction::Unary(function)),
         }
     }
@@ -123,7 +156,7 @@ impl Program {
                     stack[below] = std::mem::replace(&mut top, variables[index]);
                     below += 1;
                 }
-                Instruction::Unary(function) => top = function(top),
+                Instruction::Unary(function) => top = function.apply(top),
                 Instruction::Binary(operation) => {
                     below -= 1;
                     top = operation.apply(stack[below], top);
@@ -133,6 +166,55 @@ impl Program {
             }
         }
         top
+    }
+}
+
+/// What a formula can be evaluated over besides numbers: the operations on one kind of value.
+pub(super) trait Algebra {
+    /// What an operand and a result is.
+    type Value: Clone;
+    fn number(&mut self, value: f64) -> Self::Value;
+    fn variable(&mut self, index: usize) -> Self::Value;
+    fn unary(&mut self, function: Unary, operand: Self::Value) -> Self::Value;
+    fn binary(&mut self, operation: Binary, left: Self::Value, right: Self::Value) -> Self::Value;
+    /// A power whose exponent is a number of the formula.
+    fn power(&mut self, base: Self::Value, exponent: f64) -> Self::Value;
+}
+
+impl Program {
+    /// The value of the formula in another algebra.
+    pub(super) fn eval_in<A: Algebra>(&self, algebra: &mut A) -> A::Value {
+        let mut stack: Vec<A::Value> = Vec::with_capacity(self.height + 1);
+        let pop = |stack: &mut Vec<A::Value>| stack.pop().expect("the parser has counted the operands");
+        for instruction in &self.instructions {
+            let result = match *instruction {
+                Instruction::Number(value) => algebra.number(value),
+                Instruction::Variable(index) => algebra.variable(index),
+                Instruction::Unary(function) => {
+                    let operand = pop(&mut stack);
+                    algebra.unary(function, operand)
+                }
+                Instruction::Binary(operation) => {
+                    let right = pop(&mut stack);
+                    let left = pop(&mut stack);
+                    algebra.binary(operation, left, right)
+                }
+                Instruction::BinaryNumber(Binary::Power, exponent) => {
+                    let base = pop(&mut stack);
+                    algebra.power(base, exponent)
+                }
+                Instruction::BinaryNumber(operation, value) => {
+                    let (left, right) = (pop(&mut stack), algebra.number(value));
+                    algebra.binary(operation, left, right)
+                }
+                Instruction::BinaryVariable(operation, index) => {
+                    let (left, right) = (pop(&mut stack), algebra.variable(index));
+                    algebra.binary(operation, left, right)
+                }
+            };
+            stack.push(result);
+        }
+        pop(&mut stack)
     }
 }
 
@@ -148,7 +230,7 @@ mod tests {
         program.number(2.0);
         program.binary(Binary::Power);
         program.binary(Binary::Subtract);
-        program.unary(f64::abs);
+        program.unary(Unary::Abs);
         assert_eq!(program.height(), 1);
         assert_eq!(program.eval(&[1.0, 3.0]), 8.0);
     }
@@ -159,7 +241,7 @@ mod tests {
         program.number(2.0);
         program.number(3.0);
         program.binary(Binary::Multiply);
-        program.unary(|x| -x);
+        program.unary(Unary::Negate);
         assert!(matches!(program.instructions[..], [Instruction::Number(-6.0)]));
         program.variable(0);
         program.number(1.0);

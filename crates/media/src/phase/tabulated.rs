@@ -2,6 +2,7 @@
 
 use super::{PhaseError, PhaseFunction};
 use crate::FieldError;
+use crate::interpolation::between;
 use std::f64::consts::TAU;
 
 /// Linear in the cosine between `cosines[i]` and the next node, normalised by the constructor.
@@ -88,8 +89,9 @@ impl PhaseFunction for Tabulated {
         let inner = &self.cosines[1..self.cosines.len() - 1];
         let i = inner.partition_point(|&node| node <= cosine);
         let (from, to) = (self.cosines[i], self.cosines[i + 1]);
-        let mass = self.densities[i] * (to - cosine) + self.densities[i + 1] * (cosine - from);
-        mass / (TAU * (to - from))
+        let (a, b) = (self.densities[i], self.densities[i + 1]);
+        let mass = a * (to - cosine) + b * (cosine - from);
+        between(mass / (TAU * (to - from)), a / TAU, b / TAU)
     }
     #[inline]
     fn sample_cosine(&self, u: f64) -> f64 {
@@ -146,6 +148,17 @@ mod tests {
             assert!((one - 1.0).abs() < 1e-14, "{one}");
             assert!((mean - phase.mean_cosine()).abs() < 1e-14, "{mean}");
         }
+    }
+
+    #[test]
+    fn it_keeps_to_the_values_of_its_nodes() {
+        let flat = Tabulated::new(vec![-1.0, -0.3, 0.1, 1.0], vec![0.7, 0.7, 0.7, 0.1]).unwrap();
+        let node = flat.eval(-1.0);
+        for i in 0..10_000 {
+            let cosine = f64::from(i) * 1.1e-4 - 1.0;
+            assert_eq!(flat.eval(cosine), node, "{cosine}");
+        }
+        assert!((0..10_000).all(|i| flat.eval(0.1 + f64::from(i) * 9e-5) <= node));
     }
 
     #[test]

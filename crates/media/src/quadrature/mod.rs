@@ -10,10 +10,13 @@ mod cumulative;
 mod panels;
 mod ray;
 mod rule;
+mod zeros;
 
 pub use cumulative::Cumulative;
 pub use panels::{Integral, Tolerance};
 pub use ray::RayQuadrature;
+
+pub(crate) use panels::compensated_sum;
 
 use panels::Panels;
 

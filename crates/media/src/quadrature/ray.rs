@@ -41,6 +41,18 @@ impl<F: Extinction> RayQuadrature<F> {
         panels.split_at(points, &|s| field.sigma_t(s));
     }
 
+    /// Makes the places at which `function(s, sigma_t)` changes its sign borders between panels: where an integrand takes its size, or
+    /// decides by its sign, it has a kink there. The function must be as smooth between the borders as σ_t is.
+    pub fn split_at_zeros(&mut self, tolerance: Tolerance, function: &dyn Fn(f64, f64) -> f64) {
+        /// The place of a kink enters an integral by the square of its error.
+        const PLACE: f64 = 1e-9;
+        let Self { field, panels } = self;
+        let tolerance = Tolerance { absolute: PLACE, relative: PLACE, ..tolerance };
+        panels.settle(&|s| field.sigma_t(s), tolerance, |s, &sigma_t| [function(s, sigma_t)]);
+        let zeros = panels.zeros(&|s, &sigma_t| function(s, sigma_t));
+        self.split_at(&zeros);
+    }
+
     /// ∫ of each component of `integrand(s, sigma_t)` over the profile.
     pub fn integrate<const K: usize>(
         &mut self,

@@ -159,6 +159,11 @@ pub(super) fn integral_to(expansion: &Expansion, x: f64) -> f64 {
     integral
 }
 
+/// An expansion at `x`.
+pub(super) fn value_of(expansion: &Expansion, x: f64) -> f64 {
+    legendre::<{ DEGREE + 1 }>(x).iter().zip(expansion).map(|(basis, coefficient)| basis * coefficient).sum()
+}
+
 /// P_0(x) … P_{N−1}(x) by the three-term recurrence.
 fn legendre<const N: usize>(x: f64) -> [f64; N] {
     let mut basis = [1.0; N];

@@ -100,6 +100,11 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
         self.unit
     }
 
+    /// max D over the nodes so far: what the greatest estimate is the exponential of, in units of T.
+    pub(super) fn greatest(&self) -> f64 {
+        self.quadrature.nodes().fold(0.0_f64, |greatest, (_, d)| greatest.max(d))
+    }
+
     /// Var D.
     pub(super) fn k2(&self) -> f64 {
         self.k2
@@ -124,6 +129,17 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
     pub(super) fn expect<const K: usize>(&mut self, g: impl Fn(f64, f64) -> [f64; K]) -> [f64; K] {
         let scale = 1.0 / self.unit;
         self.quadrature.integrate(self.tolerance, |_, d| g(d, d * scale)).value
+    }
+
+    /// As [`expect`](Self::expect), of numbers of any size: exact relative to themselves or to `size`, whichever is greater.
+    pub(super) fn expect_within<const K: usize>(
+        &mut self,
+        size: f64,
+        g: impl Fn(f64, f64) -> [f64; K],
+    ) -> [f64; K] {
+        let (scale, relative) = (1.0 / self.unit, self.tolerance.relative);
+        let tolerance = Tolerance { absolute: relative * size, ..self.tolerance };
+        self.quadrature.integrate(tolerance, |_, d| g(d, d * scale)).value
     }
 
     /// E\[x^p g(D)\] for p = 0 … `highest`.

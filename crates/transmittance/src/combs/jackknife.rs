@@ -78,6 +78,9 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
                 lookups,
             };
         }
+        if law.greatest() > MOST_EXPONENT {
+            return of_great_deviations(&mut law, lookups);
+        }
         // z − 1 of z = E[exp((1 + i) D/2)], E[exp((1 + i) D)] and E[exp(D)]; E[D] = 0 is taken off where it would
         // cancel.
         let [half_re, half_im, full_re, full_im, plain] = law.expect(|d, _| {
@@ -101,6 +104,43 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
             relative_variance_bound: f64::INFINITY,
             lookups,
         }
+    }
+}
+
+/// Rounds in which a greater deviation may be found: each halves the panels around it.
+const MOST_ROUNDS: u32 = 60;
+
+/// Deviations D beyond which exp(D) is taken in units of exp(max D).
+const MOST_EXPONENT: f64 = 300.0;
+
+/// The law in units of exp(max D) T: beside these numbers the 1 of an unbiased mean is nothing, and nothing cancels.
+fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f64) -> Theory {
+    // Finer nodes may find greater ones: beyond 709 more they overflow, and are the new unit.
+    let (mut greatest, mut plain) = (law.greatest(), f64::NAN);
+    for _ in 0..MOST_ROUNDS {
+        greatest = law.greatest();
+        [plain] = law.expect_within(0.0, |d, _| [(d - greatest).exp()]);
+        if plain.is_finite() {
+            break;
+        }
+    }
+    // Relative to the greatest of them: waves average out.
+    let [half_re, half_im, full_re, full_im] = law.expect_within(plain, |d, _| {
+        let (half, full) = ((0.5 * (d - greatest)).exp(), (d - greatest).exp());
+        [half * (0.5 * d).cos(), half * (0.5 * d).sin(), full * d.cos(), full * d.sin()]
+    });
+    let square = |re: f64, im: f64| re * re + im * im;
+    let mean = square(half_re, half_im);
+    let variance = 0.5 * (square(full_re, full_im) + plain * plain) - mean * mean;
+    let log_relative_variance = 2.0 * greatest + variance.ln();
+    let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
+    relative_central[0] = log_relative_variance.exp();
+    Theory {
+        relative_mean: (greatest + mean.ln()).exp(),
+        relative_central,
+        log_relative_variance,
+        relative_variance_error: law.relative_error(),
+        ..Theory::mean_only(lookups)
     }
 }
 
@@ -151,6 +191,28 @@ mod tests {
         let variance = theory.relative_central[0];
         assert!(mean(1).abs() < 5.0 * (variance / f64::from(n)).sqrt());
         assert!((mean(2) - variance).abs() < 5.0 * (mean(4) / f64::from(n)).sqrt());
+    }
+
+    #[test]
+    fn two_equal_halves_of_very_different_thickness() {
+        // One tooth: X is a or b with equal probability, so that the estimate has three values.
+        let law = |a: f64, b: f64| {
+            let step = fairflight_media::PiecewiseConstant::new(vec![0.0, 0.5, 1.0], vec![a, b]).unwrap();
+            theory_of(step, &Jackknife::new(Comb::new(1, CombShape::Uniform).unwrap()))
+        };
+        let (a, b) = (0.5, 900.0);
+        let found = law(a, b);
+        // In units of exp(−a); T = exp(−(a + b)/2), and all but the pair (a, a) is nothing.
+        let log_mean = 0.25_f64.ln() + 0.5 * (b - a);
+        assert_relative_eq!(found.relative_mean.ln(), log_mean, max_relative = 1e-12);
+        let log_variance = (0.25_f64 - 0.0625).ln() + (b - a);
+        assert_relative_eq!(found.log_relative_variance, log_variance, max_relative = 1e-12);
+        assert_eq!(law(a, 4e4).relative_mean, f64::INFINITY);
+        assert_relative_eq!(
+            law(a, 4e4).log_relative_variance,
+            0.1875_f64.ln() + 4e4 - a,
+            max_relative = 1e-12
+        );
     }
 
     #[test]

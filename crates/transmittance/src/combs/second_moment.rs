@@ -30,6 +30,10 @@ const ORDERS: [usize; 3] = [12, 24, 48];
 /// A share of the sum that is negligible.
 const NEGLIGIBLE: f64 = 1e-13;
 
+/// Deviations beyond which the orders that matter are more than the last of [`ORDERS`]: the share of order n is about (D²/2)^n/n!, at 48
+/// still exp(200) for D = 100; and exp(2D) D^96 is a number up to here.
+const MOST_DEVIATION: f64 = 100.0;
+
 /// Var R with its error relative to itself; NaN where the orders that matter are too many.
 pub(super) fn relative_variance<F: Breakpoints>(
     law: &mut DeviationLaw<'_, F>,
@@ -37,6 +41,9 @@ pub(super) fn relative_variance<F: Breakpoints>(
 ) -> (f64, f64) {
     if law.unit() == 0.0 {
         return (0.0, 0.0);
+    }
+    if law.unit() > MOST_DEVIATION {
+        return (f64::NAN, f64::NAN);
     }
     for highest in ORDERS {
         let tables = Tables::new(law, highest);

@@ -1,8 +1,8 @@
 //! Debiasing by a telescoping sum of nested combs (misso-2022; blanchet-2015).
 
 use super::{Comb, CombShape, NoTeeth, Prepared};
-use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
-use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
+use crate::TransmittanceEstimator;
+use fairflight_media::Extinction;
 use fairflight_sources::UniformSource;
 
 /// exp(−X) of a comb of k teeth, and the difference that a comb of 2^l k teeth makes, at a random level l.
@@ -25,7 +25,7 @@ use fairflight_sources::UniformSource;
 /// level of 4, a bias (1e-5 on the seed ray), and draw the level from one variate, whose lattice ends the levels in
 /// its own way; here a variate decides on each level.
 ///
-/// **Variance.** All moments are sums over levels of integrals over u. Δ_l is quadratic in X_odd − X_even, the error
+/// **Variance.** (`telescoping_law.rs`) All moments are sums over levels of integrals over u. Δ_l is quadratic in X_odd − X_even, the error
 /// of a comb of step h ~ 2^{−l}, so that E\[Δ_l²\] ~ 2^{−bl} goes like its fourth power: b = 4 where σ_t jumps, or
 /// differs at its ends (then endpoint matching helps); 8 where only its slope does; 2 where it is noise finer than
 /// the teeth, whose error is that of h^{1/2}; faster than any power where it is smooth and matched at all orders. The
@@ -100,14 +100,14 @@ impl Telescoping {
     }
 
     /// p_l.
-    fn probability(&self, level: u32) -> f64 {
+    pub(super) fn probability(&self, level: u32) -> f64 {
         self.level_ratio * (1.0 - self.level_ratio).powi(level as i32)
     }
 
     /// The combs inside that of `level` with the variate u: the mean of `each`(X) over those of level 0, and the
     /// difference Δ_level times exp(`offset`).
     #[inline]
-    fn nested<F: Extinction>(
+    pub(super) fn nested<F: Extinction>(
         &self,
         field: &F,
         prepared: &Prepared,
@@ -129,9 +129,23 @@ impl Telescoping {
             even += x_even;
             odd += x_odd;
         }
-        let sinh = (0.5 * scale * (odd - even)).sinh();
-        (scale * base, -2.0 * (offset - scale * (even + odd)).exp() * sinh * sinh)
+        (scale * base, difference(offset - scale * (even + odd), 0.5 * scale * (odd - even)))
     }
+}
+
+/// −2 exp(`exponent`) sinh²(`half`), 0 or infinite only where that itself is: exp(exponent) and sinh² may under- and overflow where their
+/// product does neither. With 2 sinh²(b) = exp(2|b|) (1 − exp(−2|b|))²/2 it is one exponential.
+#[inline]
+fn difference(exponent: f64, half: f64) -> f64 {
+    if exponent.abs() < 700.0 && half.abs() < 350.0 {
+        let sinh = half.sinh();
+        return -2.0 * exponent.exp() * sinh * sinh;
+    }
+    if half == 0.0 {
+        return 0.0;
+    }
+    let both = 2.0 * half.abs();
+    -(exponent + both + 2.0 * (-(-both).exp_m1()).ln() - std::f64::consts::LN_2).exp()
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
@@ -150,142 +164,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
     fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
         true
     }
-}
-
-/// Look-ups that the theory may spend on one level.
-const MOST_LOOKUPS: f64 = 3e6;
-
-/// A share of the variance that is negligible.
-const NEGLIGIBLE: f64 = 1e-13;
-
-/// What one level adds: E\[b\] and E\[Δ\], E\[Δ²\]/p² and E\[(b + Δ/p)^n\], n = 2 … 8, in units of the deviation at
-/// level 0, b the T_0 of that level less 1.
-struct Level {
-    base: f64,
-    difference: f64,
-    square: f64,
-    moments: [f64; HIGHEST_MOMENT - 1],
-}
-
-impl Telescoping {
-    /// The moments of a level in units of `unit`; `None` where they cost too much.
-    fn moments_at<F: Breakpoints>(
-        &self,
-        field: &F,
-        prepared: &Prepared,
-        level: u32,
-        (thickness, unit): (f64, f64),
-        tolerance: Tolerance,
-    ) -> Option<Level> {
-        let teeth = self.comb.teeth().checked_mul(1_u32.checked_shl(level)?)?;
-        // Its teeth stand on a breakpoint at the same variates as those of the comb that it makes up.
-        let breaks = Comb::new(teeth, self.comb.shape()).ok()?.folded_breakpoints(field, prepared);
-        let most_panels = (MOST_LOOKUPS / 21.0 / f64::from(teeth)) as usize;
-        if breaks.len() >= most_panels {
-            return None;
-        }
-        let probability = self.probability(level);
-        let exactness = tolerance.relative.max(1e-12);
-        let tolerance =
-            Tolerance { absolute: exactness / probability.sqrt(), relative: exactness, most_panels };
-        let integral = adaptive_integral(1.0, &breaks, tolerance, |u| {
-            let (base, difference) =
-                self.nested(field, prepared, (level, u), thickness, |x| (thickness - x).exp_m1());
-            let (base, difference) = (base / unit, difference / unit);
-            let weighted = difference / probability;
-            let value = base + weighted;
-            let mut power = value;
-            let mut all = [base, difference, weighted * weighted, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-            for slot in &mut all[3..] {
-                power *= value;
-                *slot = power;
-            }
-            all
-        });
-        let [base, difference, square, moments @ ..] = integral.value;
-        Some(Level { base, difference, square, moments })
-    }
-}
-
-impl<F: Breakpoints> ClosedForm<F> for Telescoping {
-    /// All moments where the levels that matter can be summed. Where they cannot (a profile with kinks has some at
-    /// every level), the variance alone, its tail continued as a geometric series, whose sum is the error that is
-    /// stated; infinite where the levels add more and more.
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
-        let field = quadrature.field();
-        let prepared = self.comb.prepare(field, 0.0, field.length());
-        let lookups = self.expected_lookups();
-        let with = |relative_central: [f64; HIGHEST_MOMENT - 1], relative_variance_error: f64| Theory {
-            relative_mean: 1.0,
-            relative_central,
-            log_relative_variance: relative_central[0].ln(),
-            relative_variance_error,
-            relative_variance_bound: f64::INFINITY,
-            lookups,
-        };
-        let breaks = self.comb.folded_breakpoints(field, &prepared);
-        let noise = 8.0 * f64::EPSILON * (1.0 + optical_thickness.abs());
-        let coarse = Tolerance { absolute: noise * noise, relative: 1e-3, ..tolerance };
-        let rough = adaptive_integral(1.0, &breaks, coarse, |u| {
-            let relative = (optical_thickness - self.comb.thickness(field, &prepared, u)).exp_m1();
-            [relative * relative]
-        });
-        if rough.value[0] <= noise * noise {
-            return with([0.0; HIGHEST_MOMENT - 1], 0.0);
-        }
-        let unit = rough.value[0].sqrt();
-        let exactness = tolerance.relative.max(8.0 * noise / unit);
-        let tolerance = Tolerance { relative: exactness, ..tolerance };
-
-        let beyond = |level: u32| (1.0 - self.level_ratio).powi(level as i32 + 1);
-        let mut sums = [0.0; HIGHEST_MOMENT - 1];
-        let (mut base, mut remaining) = (0.0, 0.0);
-        let mut shares: Vec<f64> = Vec::new();
-        for level in 0.. {
-            let at = (optical_thickness, unit);
-            let Some(found) = self.moments_at(field, &prepared, level, at, tolerance) else { break };
-            let probability = self.probability(level);
-            for (sum, moment) in sums.iter_mut().zip(found.moments) {
-                *sum += probability * moment;
-            }
-            base = found.base;
-            remaining = if level == 0 { base } else { remaining + found.difference };
-            shares.push(probability * found.square);
-            // Two levels in a row, since one may be small by chance; beyond, every level has the same T_0 and no
-            // difference.
-            if level >= 2 && shares[level as usize - 1..].iter().all(|share| *share <= NEGLIGIBLE * sums[0]) {
-                for (sum, moment) in sums.iter_mut().zip(found.moments) {
-                    *sum += beyond(level) * moment;
-                }
-                return with(powers(sums, unit), exactness);
-            }
-        }
-        let mut unknown = [f64::NAN; HIGHEST_MOMENT - 1];
-        let Some([before, .., last]) = shares.len().checked_sub(5).map(|from| &shares[from..]) else {
-            return with(unknown, f64::NAN);
-        };
-        // Over four levels: where a jump stands in the binary fractions of a step repeats after two or four, if at all.
-        let ratio = (last / before).powf(0.25);
-        if ratio >= 1.0 {
-            unknown[0] = f64::INFINITY;
-            return with(unknown, f64::NAN);
-        }
-        // Σ over the levels that are left of p b² + 2 b E[Δ] + E[Δ²]/p.
-        let tail = last * ratio / (1.0 - ratio);
-        sums[0] += beyond(shares.len() as u32 - 1) * base * base - 2.0 * base * remaining + tail;
-        unknown[0] = sums[0] * unit * unit;
-        with(unknown, tail / sums[0])
-    }
-}
-
-/// Moments n = 2 … 8 in units of `unit` made absolute.
-fn powers(moments: [f64; HIGHEST_MOMENT - 1], unit: f64) -> [f64; HIGHEST_MOMENT - 1] {
-    std::array::from_fn(|i| moments[i] * unit.powi(i as i32 + 2))
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Unbiased ray marching: kettunen-2021, with any comb, any stop probability and any number of segments.
 
 use super::deviation::DeviationLaw;
+use super::power_series::of_draws;
 use super::second_moment::relative_variance;
-use super::symmetric_means::{IN_PLACE, SymmetricMeans};
+use super::symmetric_means::IN_PLACE;
 use super::{Comb, Prepared, Roulette, RunningCumulant};
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
@@ -125,13 +126,15 @@ impl UnbiasedRayMarching {
             let first = self.comb.thickness(field, &prepared, source.next_uniform());
             thickness += first;
             if order > 0 {
-                product.multiply(self.series(field, &prepared, source, first, order, &mut observe));
+                let (sum, exponent) = self.series(field, &prepared, source, first, order, &mut observe);
+                product.multiply(sum);
+                thickness -= exponent;
             }
         }
         product.times_exp(-thickness)
     }
 
-    /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs.
+    /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs: as s exp(t), see [`of_draws`].
     fn series<F: Extinction, S: UniformSource + ?Sized>(
         &self,
         field: &F,
@@ -140,7 +143,7 @@ impl UnbiasedRayMarching {
         first: f64,
         order: u32,
         observe: &mut impl FnMut(&[f64]),
-    ) -> f64 {
+    ) -> (f64, f64) {
         // X_0 − X_i: only differences enter, and they lose no digits to a large thickness.
         let mut deviations: SmallVec<[f64; IN_PLACE]> = SmallVec::new();
         deviations.push(0.0);
@@ -148,23 +151,7 @@ impl UnbiasedRayMarching {
             deviations.push(first - self.comb.thickness(field, prepared, source.next_uniform()));
         }
         observe(&deviations);
-
-        let mut means = SymmetricMeans::new();
-        let mut sum = 0.0;
-        for (pivot, &own) in deviations.iter().enumerate() {
-            means.clear();
-            let (before, others) = deviations.split_at(pivot);
-            means.extend(before.iter().chain(&others[1..]).map(|&other| other - own));
-            // w_k = 2^{1−k}/P.
-            let mut weight = self.roulette.weight(1);
-            let mut series = 1.0;
-            for &mean in &means.means()[1..] {
-                series += weight * mean;
-                weight *= 0.5;
-            }
-            sum += own.exp() * series;
-        }
-        sum / f64::from(order + 1)
+        of_draws(self.roulette, &deviations)
     }
 }
 
@@ -241,7 +228,7 @@ mod tests {
     use crate::combs::CombShape;
     use crate::test_support::{agrees, seed_ray, tent, theory_of};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseLinear};
+    use fairflight_media::{Constant, PiecewiseConstant, PiecewiseLinear};
     use fairflight_sources::{Scripted, Seeded};
 
     fn comb(teeth: u32, shape: CombShape) -> Comb {
@@ -366,6 +353,26 @@ mod tests {
         // Order 0 is exp(−X) and observes nothing.
         let found = estimator.estimate_and_observe(&line, &mut Scripted::new([0.25, 0.5]), &mut seen);
         assert_eq!((found, seen.count()), ((-1.0_f64).exp(), 1));
+    }
+
+    #[test]
+    fn dense_steps_are_what_logarithms_say() {
+        // X is 0.2 at a tooth in the thin part and 80 000 in the dense one, or both: the estimate by hand, term by term in logarithms.
+        let step = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.1, 4e4]).unwrap();
+        let estimator = UnbiasedRayMarching::new(comb(1, CombShape::Uniform), Roulette::new(0.5).unwrap());
+        let (thin, dense) = (0.2_f64, 8e4_f64);
+        for (combs, x) in [([0.7, 0.1, 0.9], [dense, thin, dense]), ([0.1, 0.2, 0.9], [thin, thin, dense])] {
+            let exact: f64 = (0..3)
+                .map(|j| {
+                    let [y1, y2] = [x[j] - x[(j + 1) % 3], x[j] - x[(j + 2) % 3]];
+                    (-x[j]).exp() * (1.0 + 2.0 * 0.5 * (y1 + y2) + y1 * y2)
+                })
+                .sum::<f64>()
+                / 3.0;
+            let mut source = Scripted::new([0.2, 0.7].into_iter().chain(combs));
+            let found = estimator.estimate(&step, &mut source);
+            assert_relative_eq!(found, exact, max_relative = 1e-10);
+        }
     }
 
     #[test]

@@ -25,6 +25,17 @@ const VOLTERRA: &str = "variance: by an integral equation along the ray";
 const BOUNDED: &str = "variance: no closed form, but an upper bound";
 const UNKNOWN: &str = "variance: no closed form";
 
+/// A power series is drawn to orders about its pivot or rate, which are counted in 32 bits.
+const MOST_ORDERS: f64 = 1e9;
+
+/// A pivot, or a rate, up to which orders can be counted.
+fn countable(order: f64, key: &str) -> Result<f64, Failure> {
+    if order.abs() > MOST_ORDERS {
+        return Err(refuse(key, &format!("must be at most {MOST_ORDERS:e}, found {order}")));
+    }
+    Ok(order)
+}
+
 fn refuse(key: &str, error: &dyn std::fmt::Display) -> Failure {
     Failure::refused(format!("{key}: {error}"))
 }
@@ -127,6 +138,7 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
                 (None, Ray::One(profile)) => depth(profile, "p_series needs a pivot; give `pivot`")?,
                 (None, Ray::Any) => return Err(refuse(&at("pivot"), &"this key is missing")),
             };
+            let pivot = countable(pivot, &at("pivot"))?;
             let estimator = PSeries::new(version, pivot).map_err(|error| refuse(&at("pivot"), &error))?;
             // Factors of t_c − S σ_t.
             let facts = Facts::new("p_series", variance)
@@ -134,7 +146,8 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
             Beyond::of(ByLookups(estimator), facts)
         }
         BeyondSpec::GeneralisedPoisson { pivot, rate } => {
-            let estimator = GeneralisedPoisson::new(*pivot, *rate).map_err(|error| refuse(key, &error))?;
+            let rate = countable(*rate, &at("rate"))?;
+            let estimator = GeneralisedPoisson::new(*pivot, rate).map_err(|error| refuse(key, &error))?;
             Beyond::of(ByLookups(estimator), Facts::new("generalised_poisson", QUADRATURE))
         }
         BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette, segments } => {

@@ -6,7 +6,7 @@ use fairflight_sources::{Seeded, derive_seed};
 use fairflight_transmittance::{Experience, Pilot, RunningCumulant, UnbiasedRayMarching};
 
 /// Draws that a self-tuned roulette learns from, and the stream they come from: none of an estimate, whatever its seed.
-pub(super) const TUNING: u32 = 32;
+pub(in crate::plan) const TUNING: u32 = 32;
 const TUNING_SEED: u64 = 0x7475_6E65;
 
 /// The variance of a comb in one segment, by draws that always make several combs.
@@ -30,7 +30,7 @@ impl FieldJob for Tune {
 }
 
 /// Pilots of the same profile that teach a hybrid: their variates are those of no estimate.
-pub(super) const PILOTS: u32 = 8;
+pub(in crate::plan) const PILOTS: u32 = 8;
 const PILOT_SEED: u64 = 0x7069_6C6F;
 
 /// A look at a profile below `majorant`, from the stream of `seed`; of a medium without extinction it tells nothing.

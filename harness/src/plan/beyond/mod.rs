@@ -9,6 +9,7 @@ mod progressive;
 mod range;
 
 pub use learning::pilot;
+pub(super) use learning::{PILOTS, TUNING};
 
 use erased::{AnyField, AnyPieces, Erased};
 use fairflight_laws::Unit;

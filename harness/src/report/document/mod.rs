@@ -14,7 +14,9 @@ pub use heat_map::{Content, HeatMap, Numbers, Panel};
 pub use table::{Cell, Column, Table};
 
 use super::result::Claim;
+use crate::budget::Budget;
 use crate::result::Provenance;
+use crate::spec::{MediumKind, MediumSpec, NegativeVoxels};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -23,10 +25,20 @@ use std::path::PathBuf;
 pub struct Volume {
     /// The file.
     pub file: PathBuf,
-    /// The grid; without it, the first float grid.
+    /// The grid; without it `density`, or else the only float grid.
     pub grid: Option<String>,
     /// A factor in front of the voxel values \[1/length\].
     pub scale: f64,
+}
+
+impl Volume {
+    /// The medium that it is, its voxels nowhere below 0.
+    #[must_use]
+    pub fn medium(&self) -> MediumSpec {
+        let Self { file, grid, scale } = self.clone();
+        let kind = MediumKind::Vdb { file, grid, scale, negative: NegativeVoxels::Refused };
+        MediumSpec { kind, bounds: None }
+    }
 }
 
 /// The choices of whoever asks for a document.
@@ -40,6 +52,8 @@ pub struct Options {
     pub threads: usize,
     /// A volume to be studied as well; only some reports take one.
     pub vdb: Option<Volume>,
+    /// Of the look-ups in that volume.
+    pub budget: Budget,
 }
 
 /// A whole report. All its texts are plain: writers escape what their format needs, and typeset σ_t and its like.

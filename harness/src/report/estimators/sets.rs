@@ -1,7 +1,7 @@
 //! The rays that estimators are compared on.
 
 use crate::Failure;
-use crate::comparison::{Effort, RaySet, chords};
+use crate::comparison::{Effort, RaySet, chords, entrants};
 use crate::plan::AnyProfile;
 use crate::report::document::Volume;
 use crate::report::run::Run;
@@ -110,15 +110,21 @@ fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
 }
 
 fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
-    let kind = MediumKind::Vdb { file: volume.file.clone(), grid: volume.grid.clone(), scale: volume.scale };
-    let (medium, bounds) = run.media.build(&MediumSpec { kind, bounds: None }, "medium")?;
+    let (medium, bounds) = run.media.build(&volume.medium(), "medium")?;
     let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 3))?;
     let majorant =
         medium.upper_bound().ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;
+    let set = RaySet::of("vdb", profiles, majorant, Tolerance::to(1e-11))?;
+    let effort = effort(run, 8192, false);
+    let each = (effort.samples + effort.counted) as f64;
+    let lookups = each * (set.depth() * entrants().len() as f64 + set.pairs());
+    let because =
+        format!("{each} estimates of each kind on {} rays, in the majorant {majorant:e}", set.rays.len());
+    run.options.budget.check("medium", lookups, &because)?;
     Ok(Arena {
         id: "vdb",
-        set: RaySet::of("vdb", profiles, majorant, Tolerance::to(1e-11))?,
-        effort: effort(run, 8192, false),
+        set,
+        effort,
         description: format!(
             "Volume: random chords of the box of {}, majorant {majorant:.4}, the greatest voxel.",
             volume.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())

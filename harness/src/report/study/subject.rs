@@ -86,10 +86,11 @@ pub(super) fn perlin(library: &MediumLibrary) -> Result<Subject, Failure> {
 
 pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject, Failure> {
     let Volume { file, grid, scale } = volume;
-    let kind = MediumKind::Vdb { file: file.clone(), grid: grid.clone(), scale: *scale };
     let name =
         file.file_name().map_or_else(|| file.display().to_string(), |n| n.to_string_lossy().into_owned());
-    let grid = grid.as_ref().map_or_else(|| "the first float grid".to_owned(), |grid| format!("grid {grid}"));
+    let grid = grid
+        .as_ref()
+        .map_or_else(|| "the density, or the only float grid,".to_owned(), |grid| format!("grid {grid}"));
     Subject::new(
         Names {
             id: "vdb",
@@ -100,7 +101,7 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
             ),
         },
         Ranking { index: 2, lookup_nanoseconds: 60.0, walk_sampling: None },
-        &MediumSpec { kind, bounds: None },
+        &volume.medium(),
         library,
         through_the_middle,
     )

@@ -198,11 +198,13 @@ fn closed_moments(theory: &Theory) -> ClosedMoments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::run_experiment;
+    use crate::experiment::analyse;
     use crate::plan::MediumLibrary;
+    use crate::reference::predict;
     use crate::report::result::Series;
     use crate::report::study::subject;
     use crate::result::Provenance;
+    use fairflight_media::Tolerance;
 
     #[test]
     fn a_point_agrees_with_the_experiment_that_it_stands_for() {
@@ -220,7 +222,10 @@ mod tests {
                 Plan::on(subject.profile.clone(), entry.at(&subject, 1.5), measured.samples, 3).unwrap();
             // The same look-ups are counted.
             plan.counted = COUNTED;
-            let result = run_experiment(&plan, provenance.clone(), &|_| ()).unwrap();
+            let prediction =
+                predict(&plan.profile, &plan.estimator, &subject.truth, Tolerance::TIGHT).unwrap();
+            let measurement = measure_plan(&plan, &subject.truth, &|_| ()).unwrap();
+            let result = analyse(&plan, &subject.truth, &prediction, &measurement, provenance.clone());
             let t = subject.facts.transmittance;
             let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-8 * b.abs(), "{series:?}: {a} {b}");
             close(measured.relative_mean, result.estimate.mean / t);

@@ -62,7 +62,7 @@ impl Prepared {
         refuse_foreign(&self.folder)?;
         let failed = |error: std::io::Error| Failure::not_written(&self.folder, error);
         // Between the two renames there is neither the older report nor the new one in place: an interrupt waits.
-        let mut shield = shield();
+        let _shield = shield();
         if fs::symlink_metadata(&self.folder).is_ok() {
             let parent = self.partial.path().parent().unwrap_or(Path::new("."));
             let name = self.folder.file_name().unwrap_or_default();
@@ -83,7 +83,7 @@ impl Prepared {
             fs::rename(self.partial.path(), &self.folder).map_err(failed)?;
         }
         self.committed = true;
-        std::mem::take(&mut self.guards).into_iter().for_each(|guard| shield.forget(guard));
+        self.guards.clear();
         Ok(())
     }
 }

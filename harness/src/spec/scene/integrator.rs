@@ -165,6 +165,17 @@ impl IntegratorSpec {
         }
     }
 
+    /// The walks of an integrator that has some, to be changed.
+    pub fn walk_mut(&mut self) -> Option<&mut WalkSpec> {
+        match self {
+            Self::ParticleTracer(tracer) => Some(&mut tracer.walk),
+            Self::LineSplitting { walk, .. } => Some(walk),
+            Self::PathTracer(spec) => Some(&mut spec.transport.walk),
+            Self::Vpl(spec) => Some(&mut spec.transport.walk),
+            Self::Transmittance { .. } | Self::SingleScattering(_) => None,
+        }
+    }
+
     /// The name of an integrator that takes no account of surfaces.
     #[must_use]
     pub fn blind_to_surfaces(&self) -> Option<&'static str> {

@@ -95,6 +95,12 @@ impl TransportSpec {
 }
 
 impl PathTracerSpec {
+    /// Paths of all lengths that travel like this.
+    #[must_use]
+    pub fn of_all_lengths(transport: TransportSpec) -> Self {
+        Self { transport, max_vertices: MOST_VERTICES as u32 }
+    }
+
     pub(super) fn take_from(object: &Object<'_>) -> Result<Self, Failure> {
         let most = object.optional("max_vertices");
         let max_vertices = most.map_or(Ok(MOST_VERTICES), |node| node.integer(1, MOST_VERTICES))?;

@@ -20,10 +20,10 @@ pub(super) fn checks() -> Vec<Check> {
     let gradient = EnvironmentMap::new(4, 2, vec![3.0, 4.0, 3.0, 2.0, 1.5, 2.0, 1.5, 1.0]).expect(LAWFUL);
     let background = |constant, maps| Background { constant, maps };
     vec![
-        adjoint("directional", (120_000, 8), Lights { sources: vec![directional], ..dark() }),
-        adjoint("point_outside", (120_000, 40), Lights { sources: vec![point], ..dark() }),
-        adjoint("constant", (130_000, 8), Lights { background: background(1.0, vec![]), ..dark() }),
-        adjoint("map", (90_000, 8), Lights { background: background(0.0, vec![gradient]), ..dark() }),
+        adjoint("directional", (190_000, 8), Lights { sources: vec![directional], ..dark() }),
+        adjoint("point_outside", (150_000, 40), Lights { sources: vec![point], ..dark() }),
+        adjoint("constant", (240_000, 8), Lights { background: background(1.0, vec![]), ..dark() }),
+        adjoint("map", (100_000, 8), Lights { background: background(0.0, vec![gradient]), ..dark() }),
     ]
 }
 

@@ -1,4 +1,9 @@
 //! Walks in space: furnaces, slabs, single scattering, photons against importons, and what bounds a walk.
+//!
+//! **N.** A walk has no closed moments, and the shape of the sample decides whether its mean may be taken as normal
+//! (`fairflight_stats::approximation`). The N that this asks for differs between seeds by a factor whose logarithm has a standard
+//! deviation of 0.06, measured over 154 checks (0.1 to 0.3 where N is below 10⁴ or the need a tenth of N). Every quick N of walks and
+//! of virtual point lights is at least 1.6 times the need that was measured, eight standard deviations.
 
 mod adjoint;
 mod furnace;

@@ -1,6 +1,7 @@
 //! Single scattering: every way to choose distances, with every walk.
 
 use super::{Check, LAWFUL, radiance};
+use crate::Kind;
 use crate::paths::{check, single_scattering};
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_media::phase::{HenyeyGreenstein, Rayleigh};
@@ -20,7 +21,7 @@ struct Scene<M, P> {
     volume: Volume<M, P, f64>,
     lights: Lights<f64>,
     lines: [Line; 2],
-    /// N of a quick run.
+    /// N of a quick run ([`super`]); the techniques that are most uneven ask for multiples.
     samples: u64,
 }
 
@@ -32,10 +33,12 @@ pub(super) fn checks() -> Vec<Check> {
 
     let inside = Arc::new(point_inside());
     for sampling in all() {
-        checks.push(of(&inside, "ratio", sampling, (tracked(double(), 1.0, None), ratio(1.0))));
+        let more = if sampling == Sampling::One(Source) { 2 } else { 1 };
+        checks.push(of(&inside, "ratio", (sampling, more), (tracked(double(), 1.0, None), ratio(1.0))));
     }
     for sampling in all().into_iter().filter(|sampling| !sampling.uses(Attenuation)) {
-        checks.push(of(&inside, "regular", sampling, (Regular, Regular)));
+        let more = if sampling == Sampling::One(Source) { 2 } else { 1 };
+        checks.push(of(&inside, "regular", (sampling, more), (Regular, Regular)));
     }
 
     let outside = Arc::new(camera_inside());
@@ -45,7 +48,7 @@ pub(super) fn checks() -> Vec<Check> {
         checks.push(of(
             &outside,
             "below, borrowed control",
-            sampling,
+            (sampling, 1),
             (tracked(double(), 0.7, Some((10, 3))), Regular),
         ));
     }
@@ -53,7 +56,13 @@ pub(super) fn checks() -> Vec<Check> {
         let model = SingleParticle { version, albedo: Albedo::new(0.5).expect(LAWFUL) };
         for sampling in [Sampling::One(Attenuation), Sampling::Two(Source, Scattering, Heuristic::Balance)] {
             let name = format!("single particle {name}, own control");
-            checks.push(of(&outside, &name, sampling, (tracked(model, 0.9, Some((5, 1))), ratio(0.8))));
+            let more = if sampling == Sampling::One(Attenuation) { 2 } else { 1 };
+            checks.push(of(
+                &outside,
+                &name,
+                (sampling, more),
+                (tracked(model, 0.9, Some((5, 1))), ratio(0.8)),
+            ));
         }
     }
 
@@ -63,7 +72,7 @@ pub(super) fn checks() -> Vec<Check> {
         checks.push(of(
             &parallel,
             "single particle terminating",
-            sampling,
+            (sampling, if sampling == Sampling::One(Scattering) { 2 } else { 1 }),
             (tracked(model, 0.9, None), ratio(0.6)),
         ));
     }
@@ -122,19 +131,20 @@ fn tracked<L: fairflight_collision::CollisionModel + Copy>(
 fn of<M, P, W, T>(
     scene: &Arc<Scene<M, P>>,
     walk: &str,
-    sampling: Sampling,
+    (sampling, more): (Sampling, u64),
     (primary, shadow): (W, T),
 ) -> Check
 where
     M: LineThickness + Send + Sync + 'static,
     P: PhaseFunction + Send + Sync + 'static,
-    W: Primary<M> + Clone + Send + Sync + 'static,
+    W: Primary<M> + Walks + Clone + Send + Sync + 'static,
     T: RayTransmittance<M> + Clone + Send + Sync + 'static,
 {
     let (id, scene) = (format!("single/{}/{walk}, {}", scene.name, words(sampling)), Arc::clone(scene));
     // Alone, that technique is uneven where the medium is: more samples, which are stratified.
     let per_ray = if sampling == Sampling::One(Technique::Source) { 8 } else { 2 };
-    let (words, name, samples) = (format!("single scattering, {walk}"), scene.name, scene.samples);
+    let (words, name) = (format!("single scattering, {walk}"), scene.name);
+    let samples = more * scene.samples;
     radiance(id, words, name, samples, move |run| {
         let Scene { volume, lights, lines, .. } = &*scene;
         // Explorers that fit the scattering-driven technique where the walk has no control.
@@ -145,6 +155,21 @@ where
                 .expect(LAWFUL);
         check(&mut integrator, lines, &single_scattering::reference(volume, lights, lines), run)
     })
+    .about(W::KINDS)
+}
+
+/// The estimator whose walk runs along a camera ray.
+trait Walks {
+    const KINDS: [Kind; 1];
+}
+impl Walks for Regular {
+    const KINDS: [Kind; 1] = [Kind::Regular];
+}
+impl Walks for Tracked<DoubleParticle> {
+    const KINDS: [Kind; 1] = [Kind::DoubleParticle];
+}
+impl Walks for Tracked<SingleParticle> {
+    const KINDS: [Kind; 1] = [Kind::SingleParticle];
 }
 
 fn by_line<M, P>(scene: &Arc<Scene<M, P>>, starts: Starts) -> Check
@@ -160,6 +185,7 @@ where
         let mut integrator = LineSampled::new(volume, lights, (line, starts, 1.0), Regular);
         check(&mut integrator, lines, &single_scattering::reference(volume, lights, lines), run)
     })
+    .about([Kind::LineIntegral])
 }
 
 /// A point light in eq. 21, where that is dense, one unit beside one of the rays, before a background.
@@ -189,7 +215,7 @@ fn camera_inside() -> Scene<AnalyticCosine, Rayleigh> {
     let camera = dvec3(0.3, -0.5, 8.5);
     Scene {
         name: "eq21 camera inside",
-        samples: 60_000,
+        samples: 62_000,
         volume: Volume {
             medium: AnalyticCosine::new(1.0).expect(LAWFUL),
             bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), 3.0).expect(LAWFUL),

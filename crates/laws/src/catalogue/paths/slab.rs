@@ -5,7 +5,7 @@ use crate::catalogue::Law;
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{check, judge_estimates, slab};
 use crate::scores::NEVER_NEGATIVE;
-use crate::{CheckResult, Run};
+use crate::{CheckResult, Kind, Run};
 use fairflight_collision::Version;
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh};
 use fairflight_media::{Line, PhaseFunction};
@@ -15,9 +15,10 @@ use fairflight_stats::{Reference, Scores};
 use fairflight_transmittance::{LineIntegral, Starts};
 use glam::DVec3;
 
+/// N of a quick run ([`super`]): more where light comes back rarely, or with many energies.
 const SAMPLES: u64 = 200_000;
-/// Where light comes back rarely, or with many energies.
-const MORE: u64 = 3 * SAMPLES;
+const MORE: u64 = 500_000;
+const MOST: u64 = 1_000_000;
 
 /// What is looked at.
 #[derive(Clone, Copy)]
@@ -59,13 +60,6 @@ impl View {
         Reference { error, scores, ..Reference::exact(mean) }
     }
 
-    /// Whether little of the light comes.
-    fn needs_more(&self, rate: f64) -> bool {
-        self.albedo <= 0.3
-            || self.optical_thickness < 1.0
-            || (self.lit == Lit::Normally && self.optical_thickness < 5.0 && (!self.reflected || rate == 1.0))
-    }
-
     fn name(&self) -> String {
         let light = match self.lit {
             Lit::Diffusely => "diffuse",
@@ -89,36 +83,38 @@ pub(super) fn checks() -> Vec<Check> {
 
     let mut checks = Vec::new();
     // r = 1, 1/2, and above 1 where the walk bears it: 2/(1 + 0.3) = 1.54.
-    for (view, walk) in [
-        (View::new(1.0, 0.3, Diffusely, false), walk(Terminating, 1.0 / 1.5)),
-        (View::new(1.0, 0.3, Normally, true), walk(NonTerminating, 1.0 / 1.5)),
-        (View::new(1.0, 0.9, Diffusely, true), walk(Adaptive, 1.0 / 1.05)),
-        (View::new(1.0, 0.9, Normally, false), walk(Terminating, 2.0)),
-        (View::new(1.0, 0.999, Diffusely, true), walk(NonTerminating, 2.0)),
-        (View::new(5.0, 0.3, Diffusely, true), walk(NonTerminating, 2.0)),
-        (View::new(5.0, 0.9, Diffusely, true), walk(Adaptive, 1.0)),
-        (View::new(5.0, 0.9, Normally, true), walk(NonTerminating, 1.0)),
-        (View::new(5.0, 0.999, Diffusely, false), walk(Terminating, 1.0)),
+    for (view, walk, samples) in [
+        (View::new(1.0, 0.3, Diffusely, false), walk(Terminating, 1.0 / 1.5), SAMPLES),
+        (View::new(1.0, 0.3, Normally, true), walk(NonTerminating, 1.0 / 1.5), 3 * SAMPLES),
+        (View::new(1.0, 0.9, Diffusely, true), walk(Adaptive, 1.0 / 1.05), SAMPLES),
+        (View::new(1.0, 0.9, Normally, false), walk(Terminating, 2.0), MORE),
+        (View::new(1.0, 0.999, Diffusely, true), walk(NonTerminating, 2.0), SAMPLES),
+        (View::new(5.0, 0.3, Diffusely, true), walk(NonTerminating, 2.0), MOST),
+        (View::new(5.0, 0.9, Diffusely, true), walk(Adaptive, 1.0), SAMPLES),
+        (View::new(5.0, 0.9, Normally, true), walk(NonTerminating, 1.0), SAMPLES),
+        (View::new(5.0, 0.999, Diffusely, false), walk(Terminating, 1.0), SAMPLES),
     ] {
-        checks.push(importons("isotropic", view, Isotropic, &isotropic, walk));
+        checks.push(importons("isotropic", (view, samples), Isotropic, &isotropic, walk));
     }
-    for (view, walk) in [
-        (View::new(1.0, 0.3, Normally, true), walk(Adaptive, 1.0 / 1.3)),
-        (View::new(1.0, 0.9, Normally, true), walk(NonTerminating, 2.0)),
-        (View::new(1.0, 0.999, Diffusely, false), walk(Terminating, 1.0)),
-        (View::new(5.0, 0.9, Diffusely, true), walk(NonTerminating, 1.0)),
-        (View::new(5.0, 0.999, Diffusely, true), walk(Adaptive, 2.0)),
+    for (view, walk, samples) in [
+        (View::new(1.0, 0.3, Normally, true), walk(Adaptive, 1.0 / 1.3), 2 * SAMPLES),
+        (View::new(1.0, 0.9, Normally, true), walk(NonTerminating, 2.0), SAMPLES),
+        (View::new(1.0, 0.999, Diffusely, false), walk(Terminating, 1.0), SAMPLES),
+        (View::new(5.0, 0.9, Diffusely, true), walk(NonTerminating, 1.0), SAMPLES),
+        (View::new(5.0, 0.999, Diffusely, true), walk(Adaptive, 2.0), SAMPLES),
     ] {
-        checks.push(importons("rayleigh", view, Rayleigh, &rayleigh, walk));
+        checks.push(importons("rayleigh", (view, samples), Rayleigh, &rayleigh, walk));
     }
-    let view = View::new(1.0, 0.9, Normally, true);
-    checks.push(importons("henyey_greenstein", view, henyey_greenstein, &forward, walk(NonTerminating, 1.0)));
-    let view = View::new(1.0, 0.9, Diffusely, true);
-    checks.push(importons("henyey_greenstein", view, henyey_greenstein, &forward, walk(Terminating, 2.0)));
+    for (view, walk, samples) in [
+        (View::new(1.0, 0.9, Normally, true), walk(NonTerminating, 1.0), MOST),
+        (View::new(1.0, 0.9, Diffusely, true), walk(Terminating, 2.0), 2 * SAMPLES),
+    ] {
+        checks.push(importons("henyey_greenstein", (view, samples), henyey_greenstein, &forward, walk));
+    }
     checks.push(in_layers(View::new(1.0, 0.9, Diffusely, false)));
     // A gain: 1.2 is scattered for each 1 that is met, and no more than a share of it stays.
     let view = View::new(0.3, 1.2, Diffusely, true);
-    checks.push(importons("isotropic gain", view, Isotropic, &isotropic, walk(NonTerminating, 1.0)));
+    checks.push(importons("isotropic gain", (view, MOST), Isotropic, &isotropic, walk(NonTerminating, 1.0)));
     for (starts, name) in [(Starts::Equidistant, "equidistant"), (Starts::Independent, "independent")] {
         checks.push(splitting(name, View::new(1.0, 0.9, Diffusely, true), starts));
         checks.push(splitting(name, View::new(5.0, 0.9, Diffusely, true), starts));
@@ -128,7 +124,13 @@ pub(super) fn checks() -> Vec<Check> {
     checks
 }
 
-fn importons<P, R>(phase_name: &str, view: View, phase: P, legendre: &[f64], walk: Walk<R>) -> Check
+fn importons<P, R>(
+    phase_name: &str,
+    (view, samples): (View, u64),
+    phase: P,
+    legendre: &[f64],
+    walk: Walk<R>,
+) -> Check
 where
     P: PhaseFunction + Copy + Send + Sync + 'static,
     R: SamplingExtinction + Clone + Send + Sync + 'static,
@@ -137,7 +139,6 @@ where
     let id = format!("slab/{} {phase_name}, {version:?} at {rate:.2}", view.name());
     let legendre = legendre.to_vec();
     let scores = view.scores(version, walk.sampling().lowest());
-    let samples = if view.needs_more(walk.sampling().highest()) { MORE } else { SAMPLES };
     radiance(id, format!("importons, {version:?}"), "slab", samples, move |run| {
         let volume = slab::volume(view.optical_thickness, view.albedo, phase).expect(LAWFUL);
         let lights = slab::lights(view.lit).expect(LAWFUL);
@@ -152,7 +153,7 @@ fn in_layers(view: View) -> Check {
     let rates = vec![2.0, 0.95, 1.0, 1.7, 0.97, 3.0, 1.2, 0.95];
     let grid = Grid::new(&volume.bounds, [1, 8, 1], rates).expect(LAWFUL);
     let walk = Walk::new(Version::Adaptive, grid);
-    importons("isotropic grid", view, Isotropic, &[1.0], walk)
+    importons("isotropic grid", (view, SAMPLES), Isotropic, &[1.0], walk)
 }
 
 fn splitting(name: &str, view: View, starts: Starts) -> Check {
@@ -165,6 +166,7 @@ fn splitting(name: &str, view: View, starts: Starts) -> Check {
         let mut tracer = LineSplitting::new(&volume, &lights, walk, (line, starts, 1.5));
         check(&mut tracer, &[view.line()], &view.reference(&Isotropic, &[1.0], NEVER_NEGATIVE), run)
     })
+    .about([Kind::LineIntegral])
 }
 
 /// Each channel of a colour is the gray slab of its own albedo. One run, three verdicts.
@@ -172,7 +174,7 @@ fn coloured(lit: Lit) -> Check {
     const ALBEDO: DVec3 = DVec3::new(0.9, 0.6, 0.999);
     let view = move |albedo| View::new(1.0, albedo, lit, true);
     let id = format!("paths/slab/{} coloured", view(0.999).name());
-    Check::new(id, Law::Radiance, "importons in colour", "slab", 3 * SAMPLES / 2, move |run| {
+    Check::new(id, Law::Radiance, "importons in colour", "slab", MORE, move |run| {
         let volume = slab::volume(1.0, ALBEDO, Isotropic).expect(LAWFUL);
         let lights = slab::lights(lit).expect(LAWFUL);
         let walk = Walk::new(Version::NonTerminating, Uniform::new(1.5).expect(LAWFUL));

@@ -4,13 +4,13 @@ use super::{Check, LAWFUL, Law, STRATEGIES};
 use crate::vpl::bounds::{coincide, compensation_at_most};
 use crate::vpl::local::{Local, estimate};
 use crate::vpl::rooms::{Replica, Room};
-use crate::vpl::scenes::{clear, cloud, diffuse, environment, homogeneous, open, rectangle, smoky};
+use crate::vpl::scenes::{ball, cloud, diffuse, environment, homogeneous, open, rectangle, smoky};
 use crate::vpl::tiny;
 use crate::{CheckResult, Run};
 use fairflight_collision::Version;
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean, Placement};
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, Medium};
+use fairflight_media::{AnalyticCosine, Bounds, EmptySpace, Medium};
 use fairflight_paths::transport::{Lobe, Vertex, World};
 use fairflight_paths::{Ratio, RayTransmittance, Uniform, Walk};
 use fairflight_scene::{Geometry, Surfaces};
@@ -43,25 +43,11 @@ pub(super) fn checks() -> Vec<Check> {
     }
     for placement in [Placement::FreeFlight, Placement::LocallyHomogeneous] {
         let options = CompensationOptions { placement, ..CompensationOptions::EXACT };
-        // Surfaces alone: three ways to have no medium.
         checks.push(same(&format!("no medium is a medium elsewhere, {placement:?}"), move |run| {
-            let mut elsewhere: Room<_, Homogeneous, _> = open(homogeneous(2.0));
+            let mut elsewhere = behind_a_wall(homogeneous(2.0));
             elsewhere.volume.bounds = Bounds::sphere(dvec3(0.0, 90.0, 0.0), 1.0).expect(LAWFUL);
-            // A lamp, since the ball that far light covers would hold the medium, too.
-            elsewhere.lights = environment(0.0);
-            let mut lit = clear();
-            lit.lights = environment(0.0);
-            for surfaces in [&mut elsewhere.surfaces, &mut lit.surfaces] {
-                let mut all = Geometry::<f64>::surfaces(surfaces).to_vec();
-                all.push(diffuse(
-                    rectangle(dvec3(-0.2, 0.5, -0.2), 0.4 * DVec3::X, 0.4 * DVec3::Z),
-                    0.5,
-                    1.0,
-                ));
-                *surfaces = Surfaces::new(all);
-            }
             let ours = replica(options, 2.0, Regular);
-            lit.coincides_with(&elsewhere, (ours, ours), run)
+            behind_a_wall(EmptySpace).coincides_with(&elsewhere, (ours, ours), run)
         }));
         checks.push(same(&format!("no surfaces is an empty list of them, {placement:?}"), move |run| {
             let Room { volume, lights, eye, .. } = cloud();
@@ -82,6 +68,16 @@ pub(super) fn checks() -> Vec<Check> {
     let id = "vpl/limit/grazing connections";
     checks.push(Check::new(id, Law::Bound, "virtual point lights", "a floor", SETS, grazing));
     checks
+}
+
+/// Floor and ball under a lamp, inside a black sphere of radius 4: no ray leaves it, whatever the variates, and what lies
+/// outside is met by nobody. (A lamp, since the ball that far light covers would hold what lies outside, too.)
+fn behind_a_wall<M>(medium: M) -> Room<Surfaces<f64>, M, HenyeyGreenstein> {
+    let room = open(medium);
+    let mut all = Geometry::<f64>::surfaces(&room.surfaces).to_vec();
+    let lamp = rectangle(dvec3(-0.2, 0.5, -0.2), 0.4 * DVec3::X, 0.4 * DVec3::Z);
+    all.extend([diffuse(lamp, 0.5, 1.0), diffuse(ball(DVec3::ZERO, 4.0), 0.0, 0.0)]);
+    Room { surfaces: Surfaces::new(all), lights: environment(0.0), ..room }
 }
 
 /// Bounded connections and one step of compensation.

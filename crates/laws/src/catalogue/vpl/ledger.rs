@@ -16,7 +16,9 @@ use fairflight_vpl::{KeepNear, Vpl};
 use glam::{DVec3, dvec3};
 use std::f64::consts::PI;
 
+/// N of a quick run; more where the sample is skewed.
 const SAMPLES: u64 = 400_000;
+const MORE: u64 = 900_000;
 const TERMINATING: Version = Version::Terminating;
 const OTHER: Version = Version::NonTerminating;
 
@@ -25,13 +27,13 @@ pub(super) fn checks() -> Vec<Check> {
     // Both sides of a lamp of 0.49 and radiance 5.
     let lamp = 2.0 * PI * 0.49 * 5.0;
     let mut checks = vec![
-        energy("surfaces", || (gray(), 2.0 * PI * 0.16 * 3.0), (OTHER, 1.0)),
-        energy("medium", || (mist(1.0), POWER), (OTHER, 3.0)),
-        energy("medium, terminating", || (mist(1.0), POWER), (TERMINATING, 3.0)),
+        energy("surfaces", SAMPLES, || (gray(), 2.0 * PI * 0.16 * 3.0), (OTHER, 1.0)),
+        energy("medium", SAMPLES, || (mist(1.0), POWER), (OTHER, 3.0)),
+        energy("medium, terminating", SAMPLES, || (mist(1.0), POWER), (TERMINATING, 3.0)),
         // Weights of either sign: 1 − r = −0.25; a small medium keeps their second moment.
-        energy("medium, below", || (mist(0.15), POWER), (OTHER, 1.6)),
-        energy("both", move || (smoky(), lamp), (OTHER, 4.0)),
-        energy("both, terminating", move || (smoky(), lamp), (TERMINATING, 4.0)),
+        energy("medium, below", MORE, || (mist(0.15), POWER), (OTHER, 1.6)),
+        energy("both", SAMPLES, move || (smoky(), lamp), (OTHER, 4.0)),
+        energy("both, terminating", SAMPLES, move || (smoky(), lamp), (TERMINATING, 4.0)),
     ];
     for (name, keep_near) in [
         ("all", None),
@@ -74,6 +76,7 @@ fn gray() -> Room<Surfaces<f64>, EmptySpace, HenyeyGreenstein> {
 /// A room and the power that shines in it, by a formula of its own.
 fn energy<G, M, P>(
     name: &str,
+    samples: u64,
     room: impl Fn() -> (Room<G, M, P>, f64) + Send + Sync + 'static,
     (version, rate): (Version, f64),
 ) -> Check
@@ -83,7 +86,7 @@ where
     P: PhaseFunction + 'static,
 {
     let id = format!("vpl/energy/{name}");
-    Check::new(id, Law::Energy, "light paths", name, SAMPLES, move |run| {
+    Check::new(id, Law::Energy, "light paths", name, samples, move |run| {
         let (Room { volume, surfaces, lights, .. }, power) = room();
         let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
         let walk = Walk::new(version, Uniform::new(rate).expect(LAWFUL));
@@ -94,7 +97,7 @@ where
 /// Σ power · |x| over first bounces: Φ a ∫ σ e^{−σ r} r dr = Φ a (1/σ − e^{−σ R} (R + 1/σ)) in a ball of radius R.
 fn first_bounce(name: &str, keep_near: Option<KeepNear>) -> Check {
     let id = format!("vpl/energy/first bounces, {name} kept");
-    Check::new(id, Law::Energy, "light paths", "a ball around a point light", 3 * SAMPLES / 2, move |run| {
+    Check::new(id, Law::Energy, "light paths", "a ball around a point light", MORE, move |run| {
         let Room { volume, surfaces, lights, .. } = mist(1.0);
         let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
         let walk = Walk::new(OTHER, Uniform::new(3.0).expect(LAWFUL));

@@ -22,18 +22,20 @@ type Case = (&'static str, fn() -> Local, u64, &'static [(Strategy, &'static str
 pub(super) fn checks() -> Vec<Check> {
     let all = &STRATEGIES[..];
     let cases: [Case; 6] = [
-        ("one light in a medium", || tiny::medium(1), 360_000, &all[..1]),
-        ("two lights in a medium", || tiny::medium(2), 330_000, all),
+        ("one light in a medium", || tiny::medium(1), 420_000, &all[..1]),
+        ("two lights in a medium", || tiny::medium(2), 600_000, all),
         ("a floor and lights in a medium", tiny::above_floor, 280_000, all),
-        ("a medium and lights on a floor and in it", || tiny::near_floor(tiny::SIGMA_T), 500_000, &all[..1]),
-        ("a corner in a medium", || tiny::corner(tiny::SIGMA_T), 200_000, all),
-        ("a corner without medium", || tiny::corner(0.0), 250_000, all),
+        ("a medium and lights on a floor and in it", || tiny::near_floor(tiny::SIGMA_T), 550_000, &all[..1]),
+        ("a corner in a medium", || tiny::corner(tiny::SIGMA_T), 280_000, all),
+        ("a corner without medium", || tiny::corner(0.0), 300_000, all),
     ];
     let mut checks = Vec::new();
     for (name, scene, samples, strategies) in cases {
         for &(strategy, of) in strategies {
             let id = format!("vpl/local/{name}/{of}");
             let estimator = format!("compensation {of}, one step");
+            // One pair at a time varies more, and is less skewed.
+            let samples = if strategy == Strategy::OneToOne { samples / 2 } else { samples };
             checks.push(Check::new(id, Law::Compensation, estimator, name, samples, move |run| {
                 every_placement(&scene(), strategy, run)
             }));
@@ -43,7 +45,7 @@ pub(super) fn checks() -> Vec<Check> {
     let name = "a medium and lights on a floor and in it";
     let id = format!("vpl/local/{name}/other rates");
     let estimator = "compensation, one step, below the extinction";
-    checks.push(Check::new(id, Law::Compensation, estimator, name, 700_000, |run| {
+    checks.push(Check::new(id, Law::Compensation, estimator, name, 950_000, |run| {
         at_other_rates(&tiny::near_floor(tiny::SIGMA_T), run)
     }));
     checks

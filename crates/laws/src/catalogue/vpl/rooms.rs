@@ -17,10 +17,10 @@ use fairflight_transmittance::Regular;
 /// The bounds take more than half of the light away, and leave mild tails: d = 1 and 1.4 in rooms two wide. Small sets have heavier
 /// tails, but make up for that by their number.
 type Size = (f64, u32, u32, u64);
-const CLOUD: Size = (1.0, 3, 2, 200_000);
-const ROUND: Size = (1.0, 2, 1, 900_000);
-const CLEAR: Size = (0.5, 8, 2, 500_000);
-const SHINY: Size = (0.5, 6, 2, 400_000);
+const CLOUD: Size = (1.0, 3, 2, 220_000);
+const ROUND: Size = (1.0, 2, 1, 1_000_000);
+const CLEAR: Size = (0.5, 8, 2, 300_000);
+const SHINY: Size = (0.5, 6, 2, 220_000);
 const SMOKY: Size = (1.0, 3, 2, 80_000);
 
 /// All rooms. Each strategy meets both placements; tiny scenes have every pair on every kind of vertex.
@@ -28,21 +28,20 @@ pub(super) fn checks() -> Vec<Check> {
     let of = |strategy, placement| CompensationOptions { strategy, placement, ..CompensationOptions::EXACT };
     let (flights, homogeneous) = (Placement::FreeFlight, Placement::LocallyHomogeneous);
     let [many, to_one, pairs] = STRATEGIES.map(|(strategy, _)| strategy);
-    let twice = |(bound, paths, points, sets): Size| (bound, paths, points, 2 * sets);
-    let fewer = (CLOUD.0, CLOUD.1, CLOUD.2, 140_000);
+    let with = |(bound, paths, points, _): Size, sets| (bound, paths, points, sets);
     let unbounded = (0.0, CLOUD.1, CLOUD.2, CLOUD.3);
     let mut checks = vec![
         furnace("cloud/1-to-N flights", cloud, 1.0, of(many, flights), CLOUD),
-        furnace("cloud/N-to-1 homogeneous", cloud, 1.0, of(to_one, homogeneous), fewer),
-        furnace("cloud/1-to-1 flights", cloud, 1.0, of(pairs, flights), twice(CLOUD)),
-        furnace("cloud/1-to-1 homogeneous", cloud, 1.0, of(pairs, homogeneous), twice(CLOUD)),
+        furnace("cloud/N-to-1 homogeneous", cloud, 1.0, of(to_one, homogeneous), with(CLOUD, 40_000)),
+        furnace("cloud/1-to-1 flights", cloud, 1.0, of(pairs, flights), with(CLOUD, 300_000)),
+        furnace("cloud/1-to-1 homogeneous", cloud, 1.0, of(pairs, homogeneous), with(CLOUD, 220_000)),
         // Path tracing by another name.
         furnace("cloud/b=0", cloud, 1.0, of(many, flights), unbounded),
         furnace("round/1-to-N homogeneous", round, GLOW, of(many, homogeneous), ROUND),
         furnace("shiny/1-to-N flights", shiny, 1.0, of(many, flights), SHINY),
     ];
     for (strategy, name) in STRATEGIES {
-        let size = if strategy == pairs { twice(CLEAR) } else { CLEAR };
+        let size = if strategy == pairs { with(CLEAR, 1_050_000) } else { CLEAR };
         checks.push(furnace(&format!("clear/{name}"), clear, 1.0, of(strategy, flights), size));
     }
     checks.push(against_paths("smoky/1-to-N flights", of(many, flights)));

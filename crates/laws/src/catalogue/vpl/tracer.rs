@@ -97,7 +97,7 @@ fn floor() -> fairflight_scene::Surface<f64> {
 fn rectangle_lamp(name: &str, heuristic: Heuristic) -> Check {
     let (corner, u, v) = (dvec3(-0.9, 0.6, -0.5), dvec3(0.8, 0.1, 0.0), dvec3(0.0, 0.0, 0.9));
     let sigma_t = 0.5;
-    let samples = if heuristic == Heuristic::Balance { 420_000 } else { 220_000 };
+    let samples = if heuristic == Heuristic::Balance { 640_000 } else { 320_000 };
     of(&format!("rectangle/{name}"), "an absorbing medium", samples, move |run| {
         let bounds = Bounds::sphere(DVec3::ZERO, 4.0).expect(LAWFUL);
         let volume = Volume { albedo: 0.0, ..haze(homogeneous(sigma_t), bounds) };
@@ -115,7 +115,7 @@ fn rectangle_lamp(name: &str, heuristic: Heuristic) -> Check {
 
 fn sphere_lamp(name: &str, heuristic: Heuristic) -> Check {
     let (center, radius) = (dvec3(-0.4, 0.8, 0.3), 0.5);
-    of(&format!("sphere/{name}"), "none", 130_000, move |run| {
+    of(&format!("sphere/{name}"), "none", 190_000, move |run| {
         let bounds = Bounds::sphere(DVec3::ZERO, 4.0).expect(LAWFUL);
         let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: phase() };
         let surfaces = Surfaces::new(vec![floor(), diffuse(ball(center, radius), 0.0, RADIANCE)]);

@@ -1,0 +1,79 @@
+//! A field that remembers its certificate.
+
+use super::{Certificate, Enclosed, Stretch};
+use crate::{Breakpoints, Extinction, IntervalBounds, Majorant, Minorant, Tolerance};
+use std::sync::{Arc, OnceLock};
+
+/// A field whose [`Certificate`] is made once, when it is first asked for, and shared by all copies that are made later.
+///
+/// Its borders are the breakpoints of the field: every closed form that is integrated over the profile then sees its features.
+#[derive(Clone, Debug)]
+pub struct Certified<F> {
+    field: F,
+    certificate: OnceLock<Arc<Certificate>>,
+}
+
+impl<F: Enclosed> Certified<F> {
+    /// The same field.
+    pub fn new(field: F) -> Self {
+        Self { field, certificate: OnceLock::new() }
+    }
+
+    /// What is proved of its optical thickness, to [`Tolerance::TIGHT`].
+    pub fn certificate(&self) -> &Certificate {
+        self.certificate.get_or_init(|| Arc::new(Certificate::of(&self.field, Tolerance::TIGHT)))
+    }
+}
+
+impl<F> Certified<F> {
+    /// The field itself.
+    pub fn field(&self) -> &F {
+        &self.field
+    }
+}
+
+impl<F: Extinction> Extinction for Certified<F> {
+    #[inline]
+    fn sigma_t(&self, s: f64) -> f64 {
+        self.field.sigma_t(s)
+    }
+    #[inline]
+    fn length(&self) -> f64 {
+        self.field.length()
+    }
+}
+
+impl<F: Majorant> Majorant for Certified<F> {
+    #[inline]
+    fn majorant(&self) -> f64 {
+        self.field.majorant()
+    }
+}
+
+impl<F: Minorant> Minorant for Certified<F> {
+    fn minorant(&self) -> f64 {
+        self.field.minorant()
+    }
+}
+
+impl<F: Enclosed> Breakpoints for Certified<F> {
+    fn breakpoints(&self) -> Vec<f64> {
+        self.certificate().borders.clone()
+    }
+}
+
+impl<F: Enclosed> Enclosed for Certified<F> {
+    fn enclose(&self, from: f64, to: f64) -> Stretch {
+        self.field.enclose(from, to)
+    }
+    fn known_borders(&self) -> Vec<f64> {
+        self.field.known_borders()
+    }
+}
+
+/// Minus infinity and infinity where nothing is proved.
+impl<F: Enclosed> IntervalBounds for Certified<F> {
+    fn bounds_between(&self, from: f64, to: f64) -> (f64, f64) {
+        self.field.range_between(from, to)
+    }
+}

@@ -1,0 +1,290 @@
+//! What an image is expected to look up, before its first pixel.
+//!
+//! Where the rates of the integrator tell, they are asked: an estimator of transmittance looks up its rate
+//! times the chord of the bounds, and where collisions end it, times the part of the chord that light passes.
+//! How often a walk collides only walks tell: a few of them are sent, each cut after so many collisions that
+//! all together take a fraction of a second. A connection counts as a look-up.
+
+use super::pilot::reduced;
+use super::tile::Tile;
+use super::{Moments, moments};
+use crate::budget::{Budget, patience, seconds_per_lookup};
+use crate::plan::{
+    AnyMedium, AnyProfile, Expected, Field, FieldJob, IntegratorPlan, KnownField, MediumLibrary, RayKnown,
+    ScenePlan, Spectra, Work,
+};
+use crate::spec::{IntegratorSpec, RayEstimatorSpec, SceneSpec, SingleScatteringSpec, VplSpec};
+use crate::{Failure, interrupt};
+use fairflight_media::Bounds;
+use fairflight_paths::SamplingExtinction;
+use fairflight_vpl::Vpl;
+use glam::DVec3;
+
+/// Columns and rows of the rays and walks that are sent.
+const SIDE: u32 = 8;
+const WALKS: f64 = (SIDE * SIDE) as f64;
+/// The look-ups that all walks together may make: a fraction of a second.
+const MOST: f64 = 1e7;
+/// Light paths that stand for all of a set, and flights for those of a split.
+const LIGHT_PATHS: u32 = 64;
+const SPLITS: u32 = 4;
+const MEAN_CELLS: u32 = 16;
+const EYE_SAMPLES: u32 = 4;
+/// Of more look-ups the rate is the reason, of fewer the number of samples.
+const MOST_ORDINARY: f64 = 1e3;
+/// Memory for the pixels, and for virtual point lights \[bytes\].
+const MOST_MEMORY: f64 = (1_u64 << 34) as f64;
+
+/// How long an image may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Length {
+    /// All samples are drawn.
+    Whole,
+    /// It ends after a pass of one sample per pixel.
+    Limited,
+}
+
+/// Whether an image may be drawn within a budget; a warning where that takes more than an hour.
+///
+/// # Errors
+/// If more look-ups are to be expected, or an interrupt asked to stop.
+pub(super) fn check(
+    spec: &SceneSpec,
+    plan: &ScenePlan,
+    library: &MediumLibrary,
+    (budget, length): (Budget, Length),
+) -> Result<Option<String>, Failure> {
+    let [columns, rows] = plan.camera.resolution();
+    let samples = if length == Length::Limited { 1 } else { spec.samples_per_pixel };
+    let pixels = f64::from(columns) * f64::from(rows);
+    let paths = pixels * f64::from(samples);
+    let because = |each: f64| format!("{columns} x {rows} pixels, {samples} samples of {each:.3e} each");
+    budget.check("samples_per_pixel", paths, &because(1.0))?;
+
+    let bytes = match &plan.spectra {
+        Spectra::Gray(_) => Tile::<f64>::BYTES_PER_PIXEL,
+        Spectra::Colour(_) => Tile::<DVec3>::BYTES_PER_PIXEL,
+        Spectra::Separate(_) => 3 * Tile::<f64>::BYTES_PER_PIXEL,
+    };
+    in_memory("camera.resolution", pixels, "pixels", bytes)?;
+
+    let chords = Chords::of(plan)?;
+    let (key, lookups) = match &spec.integrator {
+        IntegratorSpec::Transmittance { estimator } => {
+            ("integrator.estimator", paths * chords.estimate(estimator, 1.0))
+        }
+        IntegratorSpec::SingleScattering(single) => {
+            ("integrator.estimator", paths * chords.single_scattering(single, spec.lights.len()))
+        }
+        integrator => {
+            let shadow = chords.shadow(integrator, plan);
+            let walks = Walks::of(spec, plan, library, &chords, shadow)?;
+            match integrator {
+                IntegratorSpec::Vpl(vpl) => {
+                    let lookups = walks.virtual_lights(vpl, (f64::from(samples), paths), shadow)?;
+                    ("integrator.light_paths", lookups)
+                }
+                IntegratorSpec::PathTracer(_) if shadow > MOST_ORDINARY => {
+                    ("integrator.estimator", paths * walks.each)
+                }
+                _ => ("integrator.sigma_samp", paths * walks.each),
+            }
+        }
+    };
+    let each = lookups / paths;
+    let key = if each > MOST_ORDINARY { key } else { "samples_per_pixel" };
+    budget.check(key, lookups.max(paths), &because(each))?;
+    let seconds = chords.profile.as_ref().map_or(0.0, seconds_per_lookup);
+    Ok(if length == Length::Whole { patience(lookups, seconds) } else { None })
+}
+
+/// Whether so many of something, of so many bytes each, may be kept in memory.
+fn in_memory(key: &str, count: f64, what: &str, bytes: usize) -> Result<(), Failure> {
+    let needed = count * bytes as f64;
+    if needed <= MOST_MEMORY {
+        return Ok(());
+    }
+    let gib = |bytes: f64| bytes / f64::from(1_u32 << 30);
+    Err(Failure::refused(format!(
+        "{key}: {count:.1e} {what} take {:.0} GiB of memory, more than {:.0}",
+        gib(needed),
+        gib(MOST_MEMORY)
+    )))
+}
+
+/// Camera rays in the bounds of the medium.
+struct Chords {
+    /// Their mean length, a ray that misses counted as 0 \[length\].
+    mean: f64,
+    /// The share of it that light passes: ∫ T ds over the length.
+    passed: f64,
+    /// The greatest extent of the bounds \[length\].
+    extent: f64,
+    upper_bound: Option<f64>,
+    /// One of the rays.
+    profile: Option<AnyProfile>,
+}
+
+impl Chords {
+    fn of(plan: &ScenePlan) -> Result<Self, Failure> {
+        let camera = plan.camera.with_resolution([SIDE; 2]).map_err(Failure::refused)?;
+        let (mut length, mut passed, mut longest) = (0.0, 0.0, None::<AnyProfile>);
+        for pixel in (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| [column, row])) {
+            let line = camera.ray(pixel, [0.5; 2]);
+            let clip = plan.bounds.clip(line.origin, line.direction, None).map_err(Failure::refused)?;
+            let Some(clip) = clip.filter(|clip| clip.length > 0.0) else { continue };
+            // A ray through more voxels than a profile may have is not needed here.
+            let Ok(profile) = AnyProfile::ray(&plan.medium, &clip) else { continue };
+            length += clip.length;
+            passed += profile.with(Passed);
+            if longest.as_ref().is_none_or(|longest| longest.length() < clip.length) {
+                longest = Some(profile);
+            }
+        }
+        let extent = match plan.bounds {
+            Bounds::Sphere { radius, .. } => 2.0 * radius,
+            Bounds::Box { min, max } => (max - min).length(),
+        };
+        let upper_bound = plan.medium.upper_bound();
+        let passed = if length > 0.0 { passed / length } else { 1.0 };
+        Ok(Self { mean: length / WALKS, passed, extent, upper_bound, profile: longest })
+    }
+
+    /// Look-ups of an estimator of transmittance on a ray of so many chords, one at least.
+    fn estimate(&self, estimator: &RayEstimatorSpec, chords: f64) -> f64 {
+        let RayEstimatorSpec::Sampled(estimator) = estimator else { return 1.0 };
+        let (length, upper_bound) = (chords * self.mean, self.upper_bound);
+        let work = Work::of(estimator, RayKnown { from: 0.0, length, upper_bound, breakpoints: 0 });
+        let lookups = match work.estimate {
+            Expected::Exactly(lookups) => lookups,
+            Expected::Between(least, most) => least.max(most * self.passed),
+        };
+        (work.preparation + lookups).max(1.0)
+    }
+
+    fn single_scattering(&self, spec: &SingleScatteringSpec, lights: usize) -> f64 {
+        let shadow = self.estimate(spec.shadow.as_ref().unwrap_or(&spec.estimator), 0.5);
+        let points = f64::from(spec.samples_per_ray) * lights.max(1) as f64;
+        self.estimate(&spec.estimator, 1.0) + points * (1.0 + shadow)
+    }
+
+    /// Look-ups that no limit of collisions cuts: of a shadow ray or a connection, over half of the bounds; of the background behind
+    /// photons, by ratio tracking; of the first flight of a split.
+    fn shadow(&self, integrator: &IntegratorSpec, plan: &ScenePlan) -> f64 {
+        let transport = match integrator {
+            IntegratorSpec::PathTracer(spec) => &spec.transport,
+            IntegratorSpec::Vpl(spec) => &spec.transport,
+            IntegratorSpec::LineSplitting { majorant, .. } => {
+                return (majorant * self.mean * self.passed).max(1.0);
+            }
+            _ => {
+                let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
+                return if photons { (rate(plan) * self.mean).max(1.0) } else { 1.0 };
+            }
+        };
+        let inside = Self { mean: self.extent, profile: None, ..*self };
+        match &transport.estimator {
+            Some(estimator) => inside.estimate(estimator, 0.5),
+            None if matches!(plan.medium, AnyMedium::Homogeneous(_)) => 1.0,
+            None => (0.5 * self.extent * self.upper_bound.unwrap_or(0.0)).max(1.0),
+        }
+    }
+}
+
+/// ∫ T(0, s) ds by the midpoint rule; where σ_t is negative light passes.
+struct Passed;
+
+impl FieldJob for Passed {
+    type Output = f64;
+    fn run<F: KnownField>(self, field: &F) -> f64
+    where
+        for<'a> &'a F: Field,
+    {
+        const STEPS: u32 = 64;
+        let step = field.length() / f64::from(STEPS);
+        let (mut thickness, mut passed) = (0.0_f64, 0.0);
+        for i in 0..STEPS {
+            let here = step * field.sigma_t((f64::from(i) + 0.5) * step).max(0.0);
+            // Exact where σ_t is constant over a step.
+            passed += (-thickness).exp() * if here > 0.0 { -(-here).exp_m1() / here } else { 1.0 };
+            thickness += here;
+        }
+        step * passed
+    }
+}
+
+/// What a few walks looked up.
+struct Walks {
+    /// Per camera path, with all that belongs to it.
+    each: f64,
+    /// Virtual point lights per light path.
+    lights: f64,
+}
+
+impl Walks {
+    fn of(
+        spec: &SceneSpec,
+        plan: &ScenePlan,
+        library: &MediumLibrary,
+        chords: &Chords,
+        shadow: f64,
+    ) -> Result<Self, Failure> {
+        let rate = rate(plan);
+        let most = (MOST / WALKS / shadow).clamp(16.0, 1e5) as u64;
+        let mut pilot = reduced(spec, SIDE, 1)?;
+        let mut scale = 1.0;
+        match &mut pilot.integrator {
+            IntegratorSpec::PathTracer(tracer) => tracer.max_vertices = tracer.max_vertices.min(most as u32),
+            IntegratorSpec::Vpl(vpl) => {
+                vpl.light_paths = vpl.light_paths.min(LIGHT_PATHS);
+                vpl.local_mean_cells = vpl.local_mean_cells.min(MEAN_CELLS);
+                scale = f64::from(vpl.eye_samples) / f64::from(vpl.eye_samples.min(EYE_SAMPLES));
+                vpl.eye_samples = vpl.eye_samples.min(EYE_SAMPLES);
+            }
+            IntegratorSpec::LineSplitting { splits, .. } => {
+                scale = f64::from(*splits) / f64::from((*splits).min(SPLITS));
+                *splits = (*splits).min(SPLITS);
+            }
+            _ => {}
+        }
+        if let Some(walk) = pilot.integrator.walk_mut() {
+            walk.max_collisions = walk.max_collisions.min(most);
+        }
+        // Where one shadow ray takes that long nobody waits for a pilot.
+        let drawn = if shadow > MOST / WALKS { None } else { draw(&pilot, library).ok() };
+        interrupt::check()?;
+        let Some(drawn) = drawn else {
+            // What is wrong with the scene, if anything is, the image itself will say.
+            return Ok(Self { each: shadow.max(rate * chords.mean * chords.passed), lights: 1.0 });
+        };
+        let cut = drawn.truncated() as f64 / WALKS;
+        let allowed = spec.integrator.walk().map_or(u64::MAX, |walk| walk.max_collisions) as f64;
+        // One that was cut has the rest of the bounds before it, as far as it may go.
+        let rest = (rate * chords.extent).min(allowed) - most as f64;
+        let each = scale * (drawn.lookups() as f64 / WALKS + cut * rest.max(0.0));
+        let lights = match &pilot.integrator {
+            IntegratorSpec::Vpl(vpl) => drawn.lights_per_set() / f64::from(vpl.light_paths),
+            _ => 0.0,
+        };
+        Ok(Self { each: each.max(1.0), lights })
+    }
+
+    /// Look-ups and connections of an image of virtual point lights.
+    fn virtual_lights(&self, vpl: &VplSpec, (sets, paths): (f64, f64), shadow: f64) -> Result<f64, Failure> {
+        let light_paths = f64::from(vpl.light_paths);
+        let lights = self.lights * light_paths;
+        in_memory("integrator.light_paths", lights, "virtual point lights", size_of::<Vpl<DVec3>>())?;
+        // The pilot's pixels were as many as its light paths: neither had more look-ups than both together.
+        let traced = sets * light_paths * self.each;
+        Ok(traced + paths * (self.each + f64::from(vpl.eye_samples) * lights * shadow.max(1.0)))
+    }
+}
+
+/// The greatest sampling extinction of the walks; 0 without any.
+fn rate(plan: &ScenePlan) -> f64 {
+    plan.integrator.walk().map_or(0.0, |walk| walk.walk().sampling().highest())
+}
+
+fn draw(pilot: &SceneSpec, library: &MediumLibrary) -> Result<Moments, Failure> {
+    moments(&ScenePlan::of(pilot, library)?, &|_| ())
+}

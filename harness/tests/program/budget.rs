@@ -1,0 +1,223 @@
+//! Work is bounded: what would take days is refused before anything is drawn.
+
+use crate::common::{fixture, harness};
+use crate::render::{scene, with};
+use serde_json::{Value, json};
+use std::time::Instant;
+
+const EVEN: &str = r#"{ "kind": "constant", "sigma_t": 0.5, "length": 2 }"#;
+const EMPTY: &str = r#"{ "kind": "constant", "sigma_t": 0, "length": 1e305 }"#;
+const FLAT: &str = r#"{ "kind": "expression", "sigma_t": "0.5", "length": 2, "majorant": 1 }"#;
+
+fn experiment(profile: &str, estimator: &str, samples: u64) -> String {
+    format!(r#"{{ "profile": {profile}, "estimator": {estimator}, "samples": {samples}, "seed": 1 }}"#)
+}
+
+/// Refused at once, in one line with the key, the number and the budget.
+#[track_caller]
+fn refused(arguments: &[&str], input: &str, words: &[&str]) {
+    let clock = Instant::now();
+    let run = harness(arguments, input);
+    assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{input}: {}", run.stderr);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    for words in words.iter().chain(&["look-ups are to be expected", "--budget"]) {
+        assert!(run.stderr.contains(words), "{words} is missing: {}", run.stderr);
+    }
+    assert!(clock.elapsed().as_secs() < 60, "{input}");
+}
+
+#[test]
+fn experiments_that_would_take_days_are_refused() {
+    for (profile, estimator, samples, key) in [
+        (EMPTY, r#"{ "kind": "double_particle", "sigma_samp": 1 }"#, 10, "estimator.sigma_samp"),
+        (EVEN, r#"{ "kind": "double_particle", "sigma_samp": 1e9 }"#, 20_000, "estimator.sigma_samp"),
+        (
+            EVEN,
+            r#"{ "kind": "double_particle", "sigma_samp": { "edges": [0, 1, 2], "values": [1, 1e12] } }"#,
+            1000,
+            "estimator.sigma_samp",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "single_particle", "version": "non_terminating", "albedo": 0.5, "sigma_samp": 1e308 }"#,
+            1,
+            "estimator.sigma_samp",
+        ),
+        (EVEN, r#"{ "kind": "woodcock", "majorant": 1e18 }"#, 10, "estimator.majorant"),
+        (
+            EVEN,
+            r#"{ "kind": "line_integral", "majorant": 1e6, "splits": 10000000 }"#,
+            100_000,
+            "estimator.splits",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "ray_marching", "steps": 10000000, "jitter": true }"#,
+            100_000,
+            "estimator.steps",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "next_flight", "majorant": 1e15, "version": "ratio" }"#,
+            10,
+            "estimator.majorant",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "next_flight", "majorant": 1e6, "version": "bidirectional" }"#,
+            10,
+            "estimator.majorant",
+        ),
+        (EVEN, r#"{ "kind": "p_series", "version": "next_flight", "pivot": 1e17 }"#, 10, "estimator.pivot"),
+        (EVEN, r#"{ "kind": "p_series", "version": "cmf", "pivot": 1e300 }"#, 10, "estimator.pivot"),
+        (EVEN, r#"{ "kind": "p_series", "version": "cumulative", "pivot": 1e8 }"#, 10_000, "estimator.pivot"),
+        (EVEN, r#"{ "kind": "generalised_poisson", "pivot": 1, "rate": 1e100 }"#, 10, "estimator.rate"),
+        (
+            EVEN,
+            r#"{ "kind": "unbiased_ray_marching", "teeth": 1000000, "segments": 1000000 }"#,
+            10,
+            "estimator.teeth",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "unbiased_ray_marching", "teeth": 1000000, "segments": 1000000, "roulette": "self_tuned" }"#,
+            1,
+            "estimator.teeth",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "telescoping", "teeth": 1000000, "level_ratio": 0.500001 }"#,
+            10,
+            "estimator.level_ratio",
+        ),
+        (
+            EVEN,
+            r#"{ "kind": "jittered_ratio", "majorant": 1e300, "epsilon": 0.5 }"#,
+            10,
+            "estimator.majorant",
+        ),
+        (EVEN, r#"{ "kind": "jittered_ratio", "majorant": 1, "epsilon": 1e-300 }"#, 10, "estimator.majorant"),
+        (
+            EVEN,
+            r#"{ "kind": "residual_cells", "cells": { "edges": [0, 2], "minorants": [0], "majorants": [1e20] } }"#,
+            10,
+            "estimator.cells",
+        ),
+        (EVEN, r#"{ "kind": "adaptive_ratio", "majorant": 1e30, "floor": 0.1 }"#, 10, "estimator.majorant"),
+        (FLAT, r#"{ "kind": "hybrid", "majorant": 9e18 }"#, 1, "estimator.majorant"),
+        (EVEN, r#"{ "kind": "jackknife", "teeth": 1000000 }"#, 1_000_000, "estimator.teeth"),
+        (EVEN, r#"{ "kind": "naive", "teeth": 1000000 }"#, 1_000_000, "estimator.teeth"),
+        (EVEN, r#"{ "kind": "progressive_majorant", "start": 1e40 }"#, 10, "estimator.start"),
+        (EVEN, r#"{ "kind": "regular" }"#, 1_000_000_000_000, "samples"),
+    ] {
+        refused(&["estimate", "-"], &experiment(profile, estimator, samples), &[key, "the budget of 1e11"]);
+    }
+}
+
+#[test]
+fn a_budget_is_what_the_command_line_says_and_a_sweep_is_a_sum() {
+    let spec = experiment(EVEN, r#"{ "kind": "double_particle", "sigma_samp": 5 }"#, 1000);
+    let run = |budget: &str| harness(&["estimate", "-", "--budget", budget], &spec).code;
+    assert_eq!((run("9999"), run("1e4")), (2, 0));
+    refused(
+        &["estimate", "-", "--budget", "9999"],
+        &spec,
+        &["estimator.sigma_samp", "1.000e4", "budget of 9.999e3"],
+    );
+    let mut sweep: Value = serde_json::from_str(&spec).unwrap();
+    sweep["sweep"] = json!({ "path": "estimator.sigma_samp", "values": [5, 4, 1] });
+    refused(
+        &["estimate", "-", "--budget", "19999"],
+        &sweep.to_string(),
+        &["sweep.values", "2.000e4", "the sum over 3 points"],
+    );
+    assert_eq!(harness(&["estimate", "-", "--budget", "20000"], &sweep.to_string()).code, 0);
+    sweep["sweep"]["values"] = json!([1, 1e12, 2]);
+    refused(&["estimate", "-"], &sweep.to_string(), &["sweep value 1000000000000", "estimator.sigma_samp"]);
+}
+
+/// A walk that ends early costs what the closed form says, however far it could have gone.
+#[test]
+fn dense_media_are_not_refused_for_what_nobody_looks_up() {
+    let dense = r#"{ "kind": "constant", "sigma_t": 1e6, "length": 1e6 }"#;
+    for estimator in [
+        r#"{ "kind": "woodcock", "majorant": 1e6 }"#,
+        r#"{ "kind": "single_particle", "version": "terminating", "albedo": 0, "sigma_samp": 1e6 }"#,
+        r#"{ "kind": "next_flight", "majorant": 1e6, "version": "delta" }"#,
+    ] {
+        let run = harness(&["estimate", "-"], &experiment(dense, estimator, 1000));
+        assert_eq!(run.code, 0, "{estimator}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn images_that_would_take_days_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("image.pfm").display().to_string();
+    let render = ["render", "-", "--out", &out];
+    let estimator = |estimator: Value| {
+        with(|scene| {
+            scene["integrator"] = json!({ "kind": "transmittance", "estimator": estimator });
+            scene["samples_per_pixel"] = json!(1000);
+        })
+    };
+    for (scene, key) in [
+        (with(|scene| scene["samples_per_pixel"] = json!(4_000_000_000_u32)), "samples_per_pixel"),
+        (with(|scene| scene["integrator"]["sigma_samp"] = json!(1e9)), "integrator.sigma_samp"),
+        (
+            with(|scene| {
+                scene["integrator"]["sigma_samp"] = json!(1e12);
+                scene["integrator"]["particles"] = json!("photons");
+            }),
+            "integrator.sigma_samp",
+        ),
+        (estimator(json!({ "kind": "double_particle", "sigma_samp": 1e9 })), "integrator.estimator"),
+        (
+            estimator(json!({ "kind": "ray_marching", "steps": 10_000_000, "jitter": true })),
+            "integrator.estimator",
+        ),
+        (estimator(json!({ "kind": "woodcock", "majorant": 1e15 })), "integrator.estimator"),
+        (
+            with(|scene| {
+                scene["integrator"] = json!({ "kind": "single_scattering", "sampling": "source", "samples_per_ray": 1_000_000,
+                    "estimator": { "kind": "double_particle", "sigma_samp": 1000 } });
+                scene["lights"] = json!([{ "kind": "point", "position": [0, 0, 30], "power": 1 }]);
+            }),
+            "integrator.estimator",
+        ),
+        (
+            with(|scene| {
+                scene["integrator"] = json!({ "kind": "path_tracer", "estimator": { "kind": "double_particle", "sigma_samp": 1e12 } });
+            }),
+            "integrator.estimator",
+        ),
+        (
+            with(|scene| {
+                scene["integrator"] = json!({ "kind": "vpl", "light_paths": 10_000_000, "eye_samples": 10_000_000, "clamp": 1 });
+                scene["samples_per_pixel"] = json!(64);
+            }),
+            "integrator.light_paths",
+        ),
+    ] {
+        refused(&render, &scene.to_string(), &[key, "pixels"]);
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    // A time limit bounds what is drawn.
+    let endless = with(|scene| scene["samples_per_pixel"] = json!(4_000_000_000_u32));
+    let limited = harness(&["render", "-", "--out", &out, "--time-limit", "0.05"], &endless.to_string());
+    assert_eq!(limited.code, 0, "{}", limited.stderr);
+    assert_eq!(harness(&["render", "-", "--out", &out, "--budget", "100"], &scene().to_string()).code, 2);
+}
+
+#[test]
+fn advice_that_would_take_days_is_refused() {
+    let cloud = fixture("cloud.vdb");
+    refused(&["advise", "--vdb", &cloud, "--scale", "2e6"], "", &["medium", "majorant 2e6"]);
+    let haze = r#"{ "kind": "homogeneous", "sigma_t": 1e15, "bounds": { "sphere": { "center": [0, 0, 0], "radius": 1 } } }"#;
+    refused(&["advise", "-"], haze, &["medium", "1e15"]);
+    refused(&["advise", "--vdb", &cloud, "--budget", "1e5"], "", &["medium", "budget of 1e5"]);
+    let out = tempfile::tempdir().unwrap();
+    let folder = out.path().join("report").display().to_string();
+    let report = ["report", "estimators", "--quick", "--vdb", &cloud, "--scale", "2e6", "--out", &folder];
+    refused(&report, "", &["majorant 2e6"]);
+}
