@@ -108,7 +108,7 @@ fn lawful_runs_are_never_unsound_and_a_bias_shows() {
         if outcome.is_biased {
             continue;
         }
-        assert_ne!(outcome.right.sound, Some(false), "{}: {}", run.spec, outcome.right.reason);
+        assert_ne!(outcome.right.sound, Some(false), "{} {}: {}", run.family, run.spec, outcome.right.reason);
         sound += u32::from(outcome.right.sound == Some(true));
         rejected += u32::from(outcome.wrong.sound == Some(false));
         // What shows far beyond its closed standard error is found.
