@@ -10,13 +10,6 @@ fn certificate(formula: &str, length: f64) -> Certificate {
 fn check(formula: &str, length: f64, exact: f64, most: f64) {
     let found = certificate(formula, length);
     let off = (found.thickness - exact).abs();
-    println!(
-        "{formula}: {} ± {:.1e}, off {off:.1e}, {} borders, cost {}",
-        found.thickness,
-        found.error,
-        found.borders.len(),
-        found.cost
-    );
     assert_eq!(found.doubt(), None, "{formula}");
     assert!(
         off <= found.error + 4.0 * f64::EPSILON * exact.abs(),
@@ -66,7 +59,6 @@ fn what_is_not_proved_is_told() {
         [("1/s", "no bound"), ("ln(s)", "no bound"), ("sin(1/s)", "budget"), ("sqrt(s - 1)", "no bound")]
     {
         let found = certificate(formula, 2.0);
-        println!("{formula}: {} {:?} {:?} {}", found.cost, found.bounds, found.doubt(), found.borders.len());
         let doubt = found.doubt().expect(formula).to_string();
         assert!(doubt.contains(reason), "{formula}: {doubt}");
     }
