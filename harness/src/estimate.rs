@@ -43,14 +43,14 @@ pub(crate) fn run(
     let overrides = Overrides { samples: arguments.samples, seed: arguments.seed };
     let request = Request::parse(&text, overrides).map_err(|failure| failure.within(&name))?;
     let budget = Budget::of(arguments.budget);
-    let (prepared, warning) = environment
+    let (prepared, warnings) = environment
         .on_threads(arguments.threads, || {
             let prepared = prepare(&request, budget)?;
-            let warning = patience_with(&prepared);
-            Ok((prepared, warning))
+            let warnings = warnings(&prepared);
+            Ok((prepared, warnings))
         })
         .map_err(|failure| failure.within(&name))?;
-    if let Some(warning) = warning {
+    for warning in warnings {
         // Nobody is left to tell if standard error is closed.
         let _ = writeln!(stderr, "warning: {warning}");
     }
@@ -100,10 +100,14 @@ fn lookups(prepared: &[Prepared]) -> f64 {
     prepared.iter().map(|prepared| prepared.lookups).sum()
 }
 
-/// A warning where all this takes more than an hour.
-fn patience_with(prepared: &[Prepared]) -> Option<String> {
-    let dearest = prepared.iter().max_by(|a, b| a.lookups.total_cmp(&b.lookups))?;
-    patience(lookups(prepared), seconds_per_lookup(&dearest.plan().profile))
+/// Where all this takes more than an hour, and where a declared majorant says that a reference may have missed something; each once.
+fn warnings(prepared: &[Prepared]) -> Vec<String> {
+    let dearest = prepared.iter().max_by(|a, b| a.lookups.total_cmp(&b.lookups));
+    let patience =
+        dearest.and_then(|dearest| patience(lookups(prepared), seconds_per_lookup(&dearest.plan().profile)));
+    let mut doubts: Vec<String> = prepared.iter().filter_map(|prepared| prepared.truth().warning()).collect();
+    doubts.dedup();
+    patience.into_iter().chain(doubts).collect()
 }
 
 fn answer(

@@ -36,7 +36,8 @@ impl Prepared {
         let samples = experiment.samples;
         let check = |each: f64| {
             let (total, length) = (work.total(samples, each), profile.length());
-            let because = if each > 1.0 || work.preparation > samples as f64 {
+            let by_rate = each > 1.0 || work.preparation > samples as f64;
+            let because = if by_rate {
                 let preparation = match work.preparation {
                     0.0 => String::new(),
                     lookups => format!(" and {lookups:.3e} before the first"),
@@ -47,19 +48,17 @@ impl Prepared {
             } else {
                 format!("samples: {samples}, each of one at least")
             };
-            budget.check(work.key, total, &because).map(|()| total)
+            let key = if by_rate { work.key } else { "samples" };
+            budget.check(key, total, &because).map(|()| total)
         };
         // What is known before anything is built costs nothing; else the closed form tells, where there is one.
-        check(match work.estimate {
-            Expected::Exactly(lookups) => lookups,
-            Expected::AtMost(_) => 0.0,
-        })?;
+        check(work.estimate.least())?;
         let plan = Plan::on(profile.clone(), experiment.estimator.clone(), samples, experiment.seed)?;
         let truth = Truth::of(&plan.profile, Tolerance::TIGHT)?;
         let prediction = predict(&plan.profile, &plan.estimator, &truth, Tolerance::TIGHT)?;
         let known = Some(prediction.theory.lookups).filter(|lookups| !lookups.is_nan());
         let lookups = check(match (work.estimate, known) {
-            (Expected::AtMost(_), Some(known)) => known,
+            (Expected::Between(..), Some(known)) => known,
             (estimate, _) => estimate.most(),
         })?;
         Ok(Self { plan, truth, prediction, lookups })
@@ -69,6 +68,12 @@ impl Prepared {
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// What is known of the profile.
+    #[must_use]
+    pub fn truth(&self) -> &Truth {
+        &self.truth
     }
 
     /// Draws the samples, and puts what was measured beside what is known.
@@ -167,7 +172,9 @@ pub fn compare(
     let closed = closed_moments(prediction, unit.exp(-truth.optical_thickness));
     let reference = Reference {
         error: truth.error() * unit.scale(),
+        certainty: truth.certainty(unit),
         moments: Some(closed),
+        variance_bound: variance_bound(&prediction.theory).filter(|_| closed.mean == 1.0),
         scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
         ..Reference::exact(closed.mean)
     };
@@ -239,6 +246,17 @@ fn variance_is_known(theory: &Theory) -> bool {
     !theory.log_relative_variance.is_nan() && (error.is_nan() || error <= DIVERGENCE)
 }
 
+/// An upper bound of the variance of one estimate, in units of T²: the closed form with the error of its integral, or what else is
+/// known.
+fn variance_bound(theory: &Theory) -> Option<f64> {
+    let bound = if variance_is_known(theory) {
+        theory.relative_central[0] * (1.0 + theory.relative_variance_error.max(0.0))
+    } else {
+        theory.relative_variance_bound
+    };
+    Some(bound).filter(|bound| bound.is_finite())
+}
+
 /// The closed moments in the unit of the verdict: as they are where that is T itself; where T is no number to divide by,
 /// only moments of zero are known in it.
 fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
@@ -253,10 +271,15 @@ fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
 
 /// How the reference is known, in words.
 fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> String {
-    let thickness = match truth.method {
-        ThicknessMethod::ClosedForm => "closed form",
-        ThicknessMethod::GaussPerCell => "two-point Gauss-Legendre per voxel cell (exact)",
-        ThicknessMethod::Quadrature => "adaptive Gauss-Kronrod quadrature",
+    let thickness = match (truth.method, &truth.doubt) {
+        (_, Some((doubt, _))) => &format!("adaptive Gauss-Kronrod quadrature (not certified: {doubt})"),
+        (ThicknessMethod::ClosedForm, None) => "closed form (certified)",
+        (ThicknessMethod::GaussPerCell, None) => {
+            "two-point Gauss-Legendre per voxel cell (exact, thus certified)"
+        }
+        (ThicknessMethod::Quadrature, None) => {
+            "quadrature with a bound of its error on every panel (certified)"
+        }
     };
     let variance = match &plan.estimator {
         AnyEstimator::Woodcock { .. } => "variance: closed form T(1 - T)",

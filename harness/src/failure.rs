@@ -68,7 +68,27 @@ impl fmt::Display for Failure {
     }
 }
 
-/// Messages of libraries may span lines; a person gets one.
+/// Messages of libraries may span lines; a person gets one. What a file wrote may hold controls that a terminal obeys; a person sees them.
 fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    if !line.contains(char::is_control) {
+        return line;
+    }
+    let shown = |c: char| if c.is_control() { c.escape_unicode().to_string() } else { c.to_string() };
+    line.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_is_one_line_without_controls() {
+        // DEL, and the single character that introduces a control sequence; found by fuzzing.
+        let failure = Failure::refused("estimator.kind: found \"jittered\u{7f}ratio\",\n  \u{9b}31m");
+        assert_eq!(
+            failure.to_string(),
+            "refused: estimator.kind: found \"jittered\\u{7f}ratio\", \\u{9b}31m"
+        );
+    }
 }

@@ -5,7 +5,9 @@ use crate::plan::{
     AnyEstimator, AnyProfile, Estimator, EstimatorJob, Field, FieldJob, Knowledge, KnownField, Lawful,
     ThicknessMethod,
 };
-use fairflight_media::{Domain, RayQuadrature, Tolerance, Violation};
+use fairflight_laws::Unit;
+use fairflight_media::{Domain, Doubt, RayQuadrature, Tolerance, Violation};
+use fairflight_stats::Certainty;
 use fairflight_transmittance::Theory;
 
 /// The optical thickness of a profile, and how well it is known.
@@ -13,8 +15,10 @@ use fairflight_transmittance::Theory;
 pub struct Truth {
     /// ∫ σ_t ds.
     pub optical_thickness: f64,
-    /// Bound of its absolute error.
+    /// Its absolute error: a bound, or an estimate where there is a `doubt`.
     pub thickness_error: f64,
+    /// Why no bound of the error is proved, and what the optical thickness is proved not to leave; `None` for what is certified.
+    pub doubt: Option<(Doubt, (f64, f64))>,
     /// How it is known.
     pub method: ThicknessMethod,
     /// Facts about the profile.
@@ -30,7 +34,31 @@ impl Truth {
         (-self.optical_thickness).exp()
     }
 
-    /// Bound of the absolute error of the transmittance.
+    /// Whether the error of the transmittance is proved, in the unit of a verdict.
+    #[must_use]
+    pub fn certainty(&self, unit: Unit) -> Certainty {
+        match self.doubt {
+            None => Certainty::Certified,
+            Some((_, (low, high))) => Certainty::Estimated { low: unit.exp(-high), high: unit.exp(-low) },
+        }
+    }
+
+    /// A declared majorant far above all that was met, named for a person, where something may have been missed: only there.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        /// A majorant is hardly ever tight; of this many times the greatest extinction it says that more is expected.
+        const FAR_ABOVE: f64 = 4.0;
+        let (majorant, seen) = (self.knowledge.upper_bound?, self.observed.1);
+        let far = majorant > FAR_ABOVE * seen.max(0.0);
+        self.doubt.filter(|_| far).map(|(doubt, _)| {
+            format!(
+                "the declared majorant {majorant} is far above all that was met of sigma_t, {seen}, and the reference is not \
+                 certified: {doubt}"
+            )
+        })
+    }
+
+    /// Absolute error of the transmittance, as far as that of the optical thickness is one.
     #[must_use]
     pub fn error(&self) -> f64 {
         self.transmittance() * self.thickness_error.exp_m1()
@@ -61,11 +89,14 @@ impl FieldJob for Integrate<'_> {
         for<'a> &'a F: Field,
     {
         let knowledge = field.knowledge();
+        let certificate = field.certificate();
+        let certified = certificate.filter(|certificate| certificate.doubt().is_none());
         let mut quadrature = RayQuadrature::new(field, &[]);
         let bound = knowledge.upper_bound.unwrap_or(f64::INFINITY);
-        // A closed form needs the integral of |sigma_t| only, roughly: its rounding is relative to that.
-        let tolerance =
-            if knowledge.optical_thickness.is_some() { Tolerance::to(0.1) } else { self.tolerance };
+        // A closed form needs the integral of |sigma_t| only, roughly: its rounding is relative to that. A certificate needs nothing: the
+        // values at its nodes are looked at alone.
+        let is_known = knowledge.optical_thickness.is_some() || certified.is_some();
+        let tolerance = if is_known { Tolerance::to(0.1) } else { self.tolerance };
         let integral = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t, sigma_t.abs()]);
         let mut observed = (f64::INFINITY, f64::NEG_INFINITY);
         for (s, sigma_t) in quadrature.nodes() {
@@ -77,16 +108,18 @@ impl FieldJob for Integrate<'_> {
             }
             observed = (observed.0.min(sigma_t), observed.1.max(sigma_t));
         }
-        let (optical_thickness, thickness_error) = match knowledge.optical_thickness {
-            Some(exact) => (exact, CLOSED_FORM_ROUNDING * integral.value[1]),
-            None => (integral.value[0], integral.error[0]),
+        let (optical_thickness, thickness_error) = match (knowledge.optical_thickness, certified) {
+            (Some(exact), _) => (exact, CLOSED_FORM_ROUNDING * integral.value[1]),
+            (None, Some(certificate)) => (certificate.thickness, certificate.error),
+            (None, None) => (integral.value[0], integral.error[0]),
         };
+        let doubt = certificate.and_then(|certificate| Some((certificate.doubt()?, certificate.bounds)));
         if !optical_thickness.is_finite() || !thickness_error.is_finite() {
             return Err(Failure::refused(
                 "profile: sigma_t cannot be integrated: its optical thickness is not finite",
             ));
         }
-        Ok(Truth { optical_thickness, thickness_error, method: knowledge.method, knowledge, observed })
+        Ok(Truth { optical_thickness, thickness_error, doubt, method: knowledge.method, knowledge, observed })
     }
 }
 

@@ -31,7 +31,14 @@ pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
         LookupLaw::MeanOnly => None,
         LookupLaw::Unknown => return None,
     };
-    Some(Reference { error: QUADRATURE * expected, moments, ..Reference::exact(expected) })
+    // Of walks through profiles of the catalogue's choice.
+    let of_mean = Reference::exact(expected).with_mild_tails();
+    Some(Reference {
+        error: QUADRATURE * expected,
+        moments,
+        scores: crate::scores::NEVER_NEGATIVE,
+        ..of_mean
+    })
 }
 
 /// As [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….

@@ -10,6 +10,9 @@ use fairflight_media::{Constant, Majorant, Minorant, PiecewiseConstant, Piecewis
 use fairflight_stats::Scores;
 use fairflight_transmittance::Explorers;
 
+/// Sums and products of what is never negative: nothing below 0, and no end above.
+pub const NEVER_NEGATIVE: Scores = Scores::Bounded { minimum: 0.0, maximum: f64::INFINITY };
+
 /// A closed interval that some quantity does not leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
@@ -143,11 +146,13 @@ pub fn tracking<M: CollisionModel>(
     if unchanged {
         return Scores::TwoValued { high: main };
     }
-    if energies.minimum < -1.0 - ROUNDING || energies.maximum > 1.0 + ROUNDING {
-        return Scores::Unbounded;
+    let grows = energies.minimum < -1.0 - ROUNDING || energies.maximum > 1.0 + ROUNDING;
+    match (energies.minimum >= 0.0, grows) {
+        (true, false) => Scores::Bounded { minimum: 0.0, maximum: main },
+        (true, true) => NEVER_NEGATIVE,
+        (false, false) => Scores::Bounded { minimum: -main, maximum: main },
+        (false, true) => Scores::Unbounded,
     }
-    let minimum = if energies.minimum >= 0.0 { 0.0 } else { -main };
-    Scores::Bounded { minimum, maximum: main }
 }
 
 /// The scores of [`fairflight_transmittance::Woodcock`]: a flight escapes or it does not.
@@ -205,7 +210,8 @@ mod tests {
         assert_eq!(scores(0.0, 1.0), BELOW_ONE);
         assert_eq!(scores(0.5, 2.0), OF_BOTH_SIGNS);
         assert_eq!(scores(0.5, 2.1), Scores::Unbounded);
-        assert_eq!(scores(-0.1, 0.5), Scores::Unbounded);
+        assert_eq!(scores(-0.1, 0.5), NEVER_NEGATIVE);
+        assert_eq!(scores(-0.1, 1.5), Scores::Unbounded);
         assert_eq!(scores(1.0, 1.0), TWO_VALUED);
         assert_eq!(tracking(&model, None, 0.0, Unit::of(0.0)), Scores::Unbounded);
     }

@@ -42,7 +42,9 @@ impl Expectation {
         let error = mean * (truth.error.exp_m1() + ROUNDING * truth.optical_thickness.abs());
         let moments =
             (one == 1.0).then(|| ClosedMoments::from_central(mean, &theory.relative_central.map(Some)));
-        Reference { error, moments, scores: *scores, ..Reference::exact(mean) }
+        let variance_bound =
+            Some(theory.relative_variance_bound).filter(|bound| one == 1.0 && bound.is_finite());
+        Reference { error, moments, variance_bound, scores: *scores, ..Reference::exact(mean) }
     }
 
     /// What the look-ups are judged against; `None` where nothing is known of them.

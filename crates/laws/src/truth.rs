@@ -1,6 +1,6 @@
 //! The optical thickness that estimates are judged against, and the unit that they are judged in.
 
-use fairflight_media::{Breakpoints, OpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{Breakpoints, Certificate, OpticalThickness, RayQuadrature, Tolerance};
 
 /// τ = ∫ σ_t over a whole profile, with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,10 +17,16 @@ impl Truth {
         Self { optical_thickness: field.optical_thickness(0.0, field.length()), error: 0.0 }
     }
 
-    /// From quadrature, with the error that it measured.
+    /// From quadrature of a profile that knows all its breakpoints, with the error that it estimated: what a closed form is checked against.
     pub fn quadrature<F: Breakpoints>(quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Self {
         let integral = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]);
         Self { optical_thickness: integral.value[0], error: integral.error[0] }
+    }
+
+    /// From a certificate, with the error that it proves; infinite where it proves none.
+    #[must_use]
+    pub fn certified(certificate: &Certificate) -> Self {
+        Self { optical_thickness: certificate.thickness, error: certificate.error }
     }
 }
 
@@ -60,7 +66,7 @@ impl Unit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fairflight_media::{Constant, PiecewiseConstant};
+    use fairflight_media::{Constant, ExpressionProfile};
 
     #[test]
     fn a_transmittance_is_one_in_its_own_unit_where_it_is_a_number() {
@@ -74,11 +80,11 @@ mod tests {
     }
 
     #[test]
-    fn closed_form_and_quadrature_agree() {
-        let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.5], vec![0.3, -0.1]).unwrap();
-        let closed = Truth::closed_form(&field);
-        let integrated = Truth::quadrature(&mut RayQuadrature::new(&field, &[]), Tolerance::TIGHT);
-        assert!((closed.optical_thickness - integrated.optical_thickness).abs() < 1e-14);
+    fn a_certificate_knows_its_error() {
+        let field = ExpressionProfile::new("exp(-s)", 2.5, None).unwrap();
+        let truth = Truth::certified(&Certificate::of(&field, Tolerance::TIGHT));
+        let exact = -(-2.5_f64).exp_m1();
+        assert!((truth.optical_thickness - exact).abs() <= truth.error && truth.error < 1e-11);
         assert_eq!(Truth::closed_form(&Constant::new(2.0, 3.0).unwrap()).optical_thickness, 6.0);
     }
 }

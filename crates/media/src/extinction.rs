@@ -41,8 +41,8 @@ pub trait InvertOpticalThickness: OpticalThickness {
 
 /// A field that says where it is not smooth.
 pub trait Breakpoints: Extinction {
-    /// Distances strictly inside the profile at which σ_t or a derivative of it jumps. In any order, duplicates allowed;
-    /// empty for a field that is smooth, or that does not know.
+    /// Distances strictly inside the profile at which σ_t or a derivative of it jumps, and such between which its features are resolved. In
+    /// any order, duplicates allowed; empty for a field that is smooth, or that does not know.
     fn breakpoints(&self) -> Vec<f64>;
 }
 

@@ -14,13 +14,14 @@
 //! | [`BoundedInCells`] | both bounds in each of many cells |
 //! | [`IntervalBounds`] | both bounds between any two distances, hence in cells |
 //! | [`Breakpoints`] | where σ_t is not smooth, so that quadrature can be split there |
+//! | [`Enclosed`] | its range and integral on any stretch, with a bound of the error |
 //! | [`SpectralExtinction`] | σ_t(s) of N wavelengths by one look-up; [`SpectralMajorant`] and others as above |
 //!
 //! A medium with [`BoxBounds`] fills a [`BoundGrid`], which gives a ray its cells.
 //!
 //! A [`Medium`] is a field in space; a [`Ray`] through it is a profile. Bounds, media and profiles know no randomness.
 //! Quadrature of a profile ([`RayQuadrature`]) is the reference that estimators are judged against; it is not an
-//! estimator.
+//! estimator. A [`Certificate`] proves the error of an optical thickness, or says what it could not prove.
 
 mod analytic_cosine;
 mod bound_cells;

@@ -11,9 +11,8 @@ use std::sync::Arc;
 /// **Law.** σ_t of every point of the closed box lies within the bounds. They need not be tight. Where they are equal σ_t has that value
 /// in the box, to rounding.
 ///
-/// Formulas and noise are none: a formula wants interval arithmetic whose elementary functions round outwards, and no crate has it for
-/// stable Rust on a plain target without a C library; of noise only a bound of its slope is known, useless for cells that are not far
-/// finer than its lattice.
+/// Formulas find them by interval arithmetic; where one has no bounds, or may have no value, they are infinite. Noise is none: the octaves beyond
+/// the first have all of their range in any box that is not far finer than their lattice, which is most of the range of the whole.
 pub trait BoxBounds: Medium {
     /// What σ_t falls below nowhere, and what it exceeds nowhere, in the box between two corners in the medium's own coordinates
     /// \[1/length\].

@@ -21,7 +21,10 @@ impl Heuristic {
     #[must_use]
     pub fn mis_weight(self, own: f64, other: f64) -> f64 {
         match self {
-            Self::Balance => own / (own + other),
+            Self::Balance => {
+                let sum = own + other;
+                if sum.is_finite() { own / sum } else { 1.0 / (1.0 + other / own) }
+            }
             Self::Power => {
                 // The ratio first: squares of densities over- and underflow.
                 if own >= other {
@@ -50,7 +53,9 @@ mod tests {
     #[test]
     fn weights_sum_to_one() {
         for heuristic in [Heuristic::Balance, Heuristic::Power, Heuristic::Maximum] {
-            for (a, b) in [(1.0, 3.0), (0.0, 2.0), (1e-200, 1e-190), (1e200, 1e180), (2.0, 2.0)] {
+            for (a, b) in
+                [(1.0, 3.0), (0.0, 2.0), (1e-200, 1e-190), (1e200, 1e180), (2.0, 2.0), (1e308, 1.5e308)]
+            {
                 let sum = heuristic.mis_weight(a, b) + heuristic.mis_weight(b, a);
                 assert!((sum - 1.0).abs() < 1e-15, "{heuristic:?} {a} {b}: {sum}");
             }

@@ -4,7 +4,7 @@ use crate::SamplingExtinction;
 use fairflight_media::{Extinction, LineThickness, Medium, OpticalThickness, Ray};
 use fairflight_scene::{Connection, Spectrum, Volume};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{RayMarching, Regular, TransmittanceEstimator};
+use fairflight_transmittance::{RayMarching, Regular, SignedProduct, TransmittanceEstimator};
 use glam::DVec3;
 
 /// An estimator of transmittance that needs no preparation for the ray.
@@ -24,12 +24,12 @@ impl<M: Medium, R: SamplingExtinction> RayTransmittance<M> for Ratio<R> {
     #[inline]
     fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
         let (line, length) = (ray.world_line(), ray.length());
-        let (mut weight, mut s) = (1.0, 0.0);
+        let (mut weight, mut s) = (SignedProduct::ONE, 0.0);
         while let Some((next, sigma_samp)) = self.0.fly(line, s, length, source.next_exponential()) {
             s = next;
-            weight *= 1.0 - ray.sigma_t(s) / sigma_samp;
+            weight.multiply(1.0 - ray.sigma_t(s) / sigma_samp);
         }
-        weight
+        weight.value()
     }
 }
 

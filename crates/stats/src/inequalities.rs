@@ -26,13 +26,15 @@ use crate::reference::{Certainty, Reference, Scores};
 /// The c of g(x) <= x^3/6 + x^4/c: the greatest (g(x) - x^3/6)/x^4 is 0.0220, at x = -5.1.
 const FOURTH: f64 = 45.0;
 
-/// The t of the test by the variance, in units of the one that is best at the level, and their weights in the mean.
-const STEPS: [(f64, f64); 4] = [(1.0, 0.7), (0.5, 0.1), (0.25, 0.1), (0.125, 0.1)];
+/// The t of the test by the variance: the one that is best at the level, with this weight, and halves of it, 2^-k with weights in
+/// proportion to 1/k^2. Where every sample is off by many standard deviations t Z must not be far from 1 for its cube to be small.
+const WEIGHT_OF_BEST: f64 = 0.7;
+const HALVINGS: i32 = 60;
 
-/// The l of the test by an end: RATIO^k times the best one for samples whose xi has the variance 1, |k| <= POWERS, with weights
-/// in proportion to 1/(1 + |k|), as most variances are not far from there.
+/// The l of the test by an end: RATIO^k times the best one for samples whose xi has the variance 1, with weights in proportion to
+/// 1/(1 + |k|), as most variances are not far from there. Far below, it is for samples that are many times too large.
 const RATIO: f64 = 1.5;
-const POWERS: i32 = 24;
+const POWERS: std::ops::RangeInclusive<i32> = -60..=24;
 
 /// The greatest l.
 const MOST: f64 = 0.95;
@@ -114,8 +116,13 @@ impl Side {
             return 1.0;
         }
         let best = (2.0 * log / (n * variance)).sqrt();
-        one_over_mean(STEPS.into_iter().map(|(step, weight)| {
-            let t = step * best;
+        let of_halves: f64 = (1..=HALVINGS).map(|k| f64::from(k).powi(-2)).sum();
+        one_over_mean((0..=HALVINGS).map(|k| {
+            let t = best * 0.5_f64.powi(k);
+            let weight = match k {
+                0 => WEIGHT_OF_BEST,
+                _ => (1.0 - WEIGHT_OF_BEST) * f64::from(k).powi(-2) / of_halves,
+            };
             let of_fourth = if t * least >= -2.0 { 0.0 } else { t * t * t * t * fourth / FOURTH };
             let exponent = t * first - t * t * t * third / 6.0 - of_fourth;
             (exponent - n * (0.5 * t * t * variance).ln_1p(), weight)
@@ -134,8 +141,8 @@ impl Side {
         let (xi, squares) = (first / room, second / room / room);
         let best = (2.0 * log / n).sqrt();
         let weight = |k: i32| 1.0 / f64::from(1 + k.abs());
-        let all: f64 = (-POWERS..=POWERS).map(weight).sum();
-        one_over_mean((-POWERS..=POWERS).map(|k| {
+        let all: f64 = POWERS.map(weight).sum();
+        one_over_mean(POWERS.map(|k| {
             let l = (best * RATIO.powi(k)).min(MOST);
             (l * xi + (l + (-l).ln_1p()) * squares, weight(k) / all)
         }))
@@ -244,6 +251,27 @@ mod tests {
         assert!((5.5..6.5).contains(&z), "{z}");
         // Nothing is known above: a mean that is too low is no evidence.
         assert!(critical_z(&bounded, -1.0) > 999.0);
+    }
+
+    #[test]
+    fn a_deviation_of_any_size_is_rejected() {
+        for z in [6.0, 100.0, 1e4, 1e7, 1e12] {
+            for (n, spread) in [(1000_usize, 1.0), (8000, 1e-6)] {
+                // Less varied than the law, as samples are that lack its rare values.
+                let shift = z / (n as f64).sqrt();
+                for sign in [1.0, -1.0] {
+                    let moved: Moments = uniforms(9)
+                        .take(n)
+                        .map(|u| 1.0 + sign * shift + spread * 3f64.sqrt() * (2.0 * u - 1.0))
+                        .collect();
+                    let p = p_of(&moved, &known(1.0));
+                    assert!(p <= LEVEL, "{sign} {z}: {p}");
+                    let end = Scores::Bounded { minimum: 0.0, maximum: f64::INFINITY };
+                    let p = p_of(&moved, &Reference { scores: end, ..Reference::exact(1.0) });
+                    assert!(p <= LEVEL || sign < 0.0 || z < 10.0, "{z}: {p}");
+                }
+            }
+        }
     }
 
     #[test]

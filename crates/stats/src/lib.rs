@@ -42,7 +42,7 @@ pub use judge::judge;
 pub use kolmogorov_smirnov::kolmogorov_smirnov;
 pub use moments::Moments;
 pub use policy::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER};
-pub use reference::{Certainty, Reference, Scores};
+pub use reference::{Certainty, Reference, Scores, Tails};
 pub use sample_size::samples_needed;
 pub use verdict::{MeanTest, StandardErrorSource, Verdict};
 

@@ -5,7 +5,7 @@ use crate::evidence::{MeanJudgement, relative};
 use crate::moments::Moments;
 use crate::normal::upper_quantile;
 use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
-use crate::reference::Reference;
+use crate::reference::{Reference, Tails};
 use crate::sample_size::for_power;
 
 /// Skewness and excess kurtosis, and the N from which on they let a mean be taken as normal.
@@ -47,8 +47,8 @@ pub(crate) struct ZTest {
     pub(crate) detectable: Option<f64>,
     /// The N that its shape and its power ask for.
     pub(crate) samples_needed: f64,
-    /// Whether it may reject: variance and shape are those of the law, and no single sample makes up much of the deviation. A
-    /// sample's own are blind to what that sample lacks: they agree, and do not reject.
+    /// Whether it may reject: variance and shape are those of the law, or its tails are known to be mild, and no single sample makes up
+    /// much of the deviation. A sample's own are blind to what that sample lacks: otherwise they agree, and do not reject.
     pub(crate) may_reject: bool,
     /// What the standard error is, in words.
     pub(crate) name: &'static str,
@@ -96,6 +96,7 @@ pub(crate) fn z_test(
             ),
         ));
     }
+    let is_of_the_law = closed_variance.is_some() && closed_shape.is_some();
     let error = (variance / n).sqrt();
     let reach = test.critical_z + upper_quantile(1.0 - POWER);
     let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
@@ -106,9 +107,7 @@ pub(crate) fn z_test(
         p: NormalApproximation::p_value(deviation / error),
         detectable: relative(reach * error + 2.0 * reference.allowance(), reference),
         samples_needed,
-        may_reject: closed_variance.is_some()
-            && closed_shape.is_some()
-            && greatest <= MOST_OF_ONE * n * error,
+        may_reject: (is_of_the_law || reference.tails == Tails::Mild) && greatest <= MOST_OF_ONE * n * error,
         name: match (closed_variance.is_some(), closed_shape.is_some()) {
             (true, true) => "z with the closed-form standard error",
             (true, false) => "z with the closed-form standard error, shape from the sample",

@@ -42,6 +42,15 @@ pub enum Certainty {
     },
 }
 
+/// What is known of values so rare and so large that a sample may lack them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tails {
+    /// Nothing: the sample's own standard error and shape are blind to them, and do not reject.
+    Unknown,
+    /// There are none that matter at this N, by the choice of what is sampled: the sample's own standard error and shape are believed.
+    Mild,
+}
+
 /// The truth that a sample should have as its mean, with its own error and what is known of the law of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
@@ -57,6 +66,8 @@ pub struct Reference {
     pub variance_bound: Option<f64>,
     /// The values that one sample can take.
     pub scores: Scores,
+    /// What is known of the tails of its law.
+    pub tails: Tails,
 }
 
 impl Reference {
@@ -70,7 +81,14 @@ impl Reference {
             moments: None,
             variance_bound: None,
             scores: Scores::Unbounded,
+            tails: Tails::Unknown,
         }
+    }
+
+    /// The same for a law that is known to have mild tails.
+    #[must_use]
+    pub const fn with_mild_tails(self) -> Self {
+        Self { tails: Tails::Mild, ..self }
     }
 
     /// Success probability mean/high of a two-valued sample, its rounding beyond [0, 1] cut off; else `None`.

@@ -345,7 +345,8 @@ impl<F: Extinction> ClosedForm<F> for PSeries {
                 let spread =
                     quadrature.integrate(tolerance, |_, sigma_t| [length * (sigma_t - mean).powi(2)]);
                 let (v, y) = (spread.value[0] + spread.error[0], pivot - optical_thickness);
-                // |Y| has kinks where Y vanishes: a rough integral and its error.
+                // |Y| has kinks where Y vanishes: split there, a rough integral and its error are enough.
+                quadrature.split_at_zeros(tolerance, &|_, sigma_t| pivot - length * sigma_t);
                 let of_magnitude = |_: f64, sigma_t: f64| [(pivot - length * sigma_t).abs() / length];
                 let magnitude = quadrature.integrate(Tolerance::to(1e-3), of_magnitude);
                 let most = (y * y + v).sqrt();

@@ -81,6 +81,7 @@ impl ProgressiveMajorant {
         quadrature: &mut RayQuadrature<F>,
         tolerance: Tolerance,
     ) -> f64 {
+        quadrature.split_at_zeros(tolerance, &|_, sigma_t| sigma_t - self.majorant);
         let above = quadrature.integrate(tolerance, |_, sigma_t| [(sigma_t - self.majorant).max(0.0)]);
         above.value[0].exp_m1()
     }

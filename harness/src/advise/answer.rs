@@ -26,6 +26,9 @@ pub(super) struct Answer {
     expected: Vec<Contestant>,
     /// Where the numbers come from.
     provenance: Provenance,
+    /// Rays whose reference is not certified: told to a person.
+    #[serde(skip)]
+    uncertified: usize,
 }
 
 /// A measured estimator.
@@ -143,6 +146,7 @@ impl Answer {
             measured,
             expected,
             provenance,
+            uncertified: set.rays.iter().filter(|ray| ray.truth.doubt.is_some()).count(),
         }
     }
 
@@ -178,6 +182,12 @@ impl Answer {
             ));
         }
         table.push_str("\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n");
+        if self.uncertified > 0 {
+            let (count, rays) = (self.uncertified, self.rays);
+            table.push_str(&format!(
+                "the transmittance of {count} of {rays} rays is not certified: features of sigma_t may have been missed there\n"
+            ));
+        }
         table
     }
 }

@@ -34,11 +34,13 @@ pub struct Bout {
     pub kurtosis: Option<f64>,
     /// Estimates drawn.
     pub samples: u64,
+    /// Whether the transmittance of the ray is certified.
+    pub is_certified: bool,
 }
 
 impl Bout {
-    /// How far the mean is from the truth, in standard errors; `None` where there is no error but rounding, or the law is not mild: a heavy tail
-    /// that was not met shows a mean too small, and a variance too small with it.
+    /// How far the mean is from the truth, in standard errors; `None` where there is no error but rounding, the truth is
+    /// not certified, or the law is not mild: a heavy tail that was not met shows a mean too small, and a variance too small with it.
     #[must_use]
     pub fn z(&self) -> Option<f64> {
         /// A mean of T is rounded to about this.
@@ -46,7 +48,8 @@ impl Bout {
         /// A kurtosis of this over the number of samples leaves their mean close to normal.
         const MILD: f64 = 0.02;
         let is_mild = self.kurtosis.is_some_and(|kurtosis| kurtosis < MILD * self.samples as f64);
-        (is_mild && self.mean_error > ROUNDING).then(|| (self.relative_mean - 1.0) / self.mean_error)
+        (is_mild && self.is_certified && self.mean_error > ROUNDING)
+            .then(|| (self.relative_mean - 1.0) / self.mean_error)
     }
 }
 
@@ -125,5 +128,6 @@ pub fn fight(ray: &TestRay, estimator: &AnyEstimator, effort: Effort, seed: u64)
         maximum: moments.maximum().unwrap_or(f64::NAN),
         kurtosis: moments.excess_kurtosis(),
         samples,
+        is_certified: ray.truth.doubt.is_none(),
     })
 }

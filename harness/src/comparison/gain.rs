@@ -91,6 +91,7 @@ mod tests {
             maximum: 1.0,
             kurtosis: None,
             samples: 1,
+            is_certified: true,
         }
     }
 

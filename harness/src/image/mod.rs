@@ -109,15 +109,25 @@ impl Image {
     /// number that is not finite. The file is named.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let named = |error: &dyn std::fmt::Display| Failure::refused(format!("{}: {error}", path.display()));
-        let decode = match Format::of(path) {
-            Some(Format::Pfm) => pfm::decode,
-            Some(Format::Exr) => exr::decode,
-            Some(Format::Png) | None => {
-                return Err(named(&"an image is read from a file that ends in .pfm or .exr"));
-            }
+        let Some(format @ (Format::Pfm | Format::Exr)) = Format::of(path) else {
+            return Err(named(&"an image is read from a file that ends in .pfm or .exr"));
         };
         let bytes = std::fs::read(path).map_err(|error| named(&error))?;
-        decode(&bytes).and_then(Self::finite).map_err(|error| named(&error))
+        Self::decode(&bytes, format).and_then(Self::finite).map_err(|error| named(&error))
+    }
+
+    /// The image in the bytes of a file of `format`, with whatever numbers it holds.
+    ///
+    /// # Errors
+    /// If they are no such file, or the format is only written.
+    pub fn decode(bytes: &[u8], format: Format) -> Result<Self, ImageError> {
+        match format {
+            Format::Pfm => pfm::decode(bytes),
+            Format::Exr => exr::decode(bytes),
+            Format::Png => {
+                Err(ImageError::Malformed { format: "PNG", reason: "it is written only".to_owned() })
+            }
+        }
     }
 
     fn finite(self) -> Result<Self, ImageError> {

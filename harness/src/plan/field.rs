@@ -1,8 +1,9 @@
 //! What the harness asks of a field, and what it knows of it.
 
 use fairflight_media::{
-    AnalyticCosine, Breakpoints, Constant, ExpressionMedium, ExpressionProfile, Extinction, Homogeneous,
-    Majorant, Minorant, OpticalThickness, Perlin, PiecewiseConstant, PiecewiseLinear, Ray, Voxels,
+    AnalyticCosine, Breakpoints, Certificate, Certified, Constant, ExpressionMedium, ExpressionProfile,
+    Extinction, Homogeneous, Majorant, Minorant, OpticalThickness, Perlin, PiecewiseConstant,
+    PiecewiseLinear, Ray, Voxels,
 };
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ pub enum ThicknessMethod {
     ClosedForm,
     /// Two-point Gauss–Legendre per voxel cell: exact to rounding.
     GaussPerCell,
-    /// Adaptive quadrature, with a measured error.
+    /// Quadrature with a certificate, where it proves enough; else with an error estimated from values at nodes.
     Quadrature,
 }
 
@@ -42,6 +43,11 @@ pub struct Knowledge {
 pub trait KnownField: Extinction + Breakpoints + Sync {
     /// Facts about the profile.
     fn knowledge(&self) -> Knowledge;
+
+    /// What is proved of the optical thickness where it has no closed form.
+    fn certificate(&self) -> Option<&Certificate> {
+        None
+    }
 }
 
 fn finite(bound: f64) -> Option<f64> {
@@ -94,9 +100,12 @@ impl KnownField for PiecewiseLinear {
     }
 }
 
-impl KnownField for ExpressionProfile {
+impl KnownField for Certified<ExpressionProfile> {
     fn knowledge(&self) -> Knowledge {
         bounds_of(self)
+    }
+    fn certificate(&self) -> Option<&Certificate> {
+        Some(Certified::certificate(self))
     }
 }
 
@@ -112,15 +121,21 @@ impl KnownField for Ray<Arc<AnalyticCosine>> {
     }
 }
 
-impl KnownField for Ray<Arc<Perlin>> {
+impl KnownField for Certified<Ray<Arc<Perlin>>> {
     fn knowledge(&self) -> Knowledge {
         bounds_of(self)
     }
+    fn certificate(&self) -> Option<&Certificate> {
+        Some(Certified::certificate(self))
+    }
 }
 
-impl KnownField for Ray<Arc<ExpressionMedium>> {
+impl KnownField for Certified<Ray<Arc<ExpressionMedium>>> {
     fn knowledge(&self) -> Knowledge {
         bounds_of(self)
+    }
+    fn certificate(&self) -> Option<&Certificate> {
+        Some(Certified::certificate(self))
     }
 }
 

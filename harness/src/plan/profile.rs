@@ -4,7 +4,7 @@ use super::{AnyMedium, Field, KnownField, MediumLibrary, VoxelLattice};
 use crate::Failure;
 use crate::spec::ProfileSpec;
 use fairflight_media::{
-    AnalyticCosine, Clip, Constant, ExpressionMedium, ExpressionProfile, Homogeneous, Perlin,
+    AnalyticCosine, Certified, Clip, Constant, ExpressionMedium, ExpressionProfile, Homogeneous, Perlin,
     PiecewiseConstant, PiecewiseLinear, Ray, Voxels,
 };
 use glam::DVec3;
@@ -20,15 +20,15 @@ pub enum AnyProfile {
     /// Linear between nodes.
     PiecewiseLinear(PiecewiseLinear),
     /// A formula in s.
-    Expression(ExpressionProfile),
+    Expression(Certified<ExpressionProfile>),
     /// A ray through a homogeneous medium.
     Homogeneous(Ray<Arc<Homogeneous>>),
     /// A ray through szirmay-kalos-2017 eq. 21.
     AnalyticCosine(Ray<Arc<AnalyticCosine>>),
     /// A ray through noise.
-    Perlin(Ray<Arc<Perlin>>),
+    Perlin(Certified<Ray<Arc<Perlin>>>),
     /// A ray through a formula in x, y, z.
-    ExpressionMedium(Ray<Arc<ExpressionMedium>>),
+    ExpressionMedium(Certified<Ray<Arc<ExpressionMedium>>>),
     /// A ray through voxels.
     Voxels(Ray<Arc<Voxels<VoxelLattice>>>),
 }
@@ -63,10 +63,10 @@ impl AnyProfile {
             ProfileSpec::PiecewiseLinear { positions, sigma_t } => Self::PiecewiseLinear(
                 PiecewiseLinear::new(positions.clone(), sigma_t.clone()).map_err(|error| refuse(&error))?,
             ),
-            ProfileSpec::Expression { sigma_t, length, majorant } => Self::Expression(
+            ProfileSpec::Expression { sigma_t, length, majorant } => Self::Expression(Certified::new(
                 ExpressionProfile::new(sigma_t, *length, *majorant)
                     .map_err(|error| Failure::refused(format!("profile.sigma_t: {error}")))?,
-            ),
+            )),
             ProfileSpec::Ray { medium, origin, direction, length } => {
                 let (medium, bounds) = library.build(medium, "profile.medium")?;
                 let clip = bounds.clip(*origin, *direction, *length).map_err(|error| refuse(&error))?;
@@ -87,8 +87,10 @@ impl AnyProfile {
             ),
             AnyMedium::Homogeneous(medium) => Self::Homogeneous(Ray::new(Arc::clone(medium), clip)),
             AnyMedium::AnalyticCosine(medium) => Self::AnalyticCosine(Ray::new(Arc::clone(medium), clip)),
-            AnyMedium::Perlin(medium) => Self::Perlin(Ray::new(Arc::clone(medium), clip)),
-            AnyMedium::Expression(medium) => Self::ExpressionMedium(Ray::new(Arc::clone(medium), clip)),
+            AnyMedium::Perlin(medium) => Self::Perlin(Certified::new(Ray::new(Arc::clone(medium), clip))),
+            AnyMedium::Expression(medium) => {
+                Self::ExpressionMedium(Certified::new(Ray::new(Arc::clone(medium), clip)))
+            }
             AnyMedium::Voxels(medium) => {
                 let ray = Ray::new(Arc::clone(medium), clip);
                 let cells = medium.cells_crossed(ray.local_line(), clip.length);
@@ -127,8 +129,8 @@ impl AnyProfile {
             | Self::Expression(_) => 0.0,
             Self::Homogeneous(ray) => ray.entry_distance(),
             Self::AnalyticCosine(ray) => ray.entry_distance(),
-            Self::Perlin(ray) => ray.entry_distance(),
-            Self::ExpressionMedium(ray) => ray.entry_distance(),
+            Self::Perlin(ray) => ray.field().entry_distance(),
+            Self::ExpressionMedium(ray) => ray.field().entry_distance(),
             Self::Voxels(ray) => ray.entry_distance(),
         }
     }
@@ -161,8 +163,8 @@ impl AnyProfile {
             | Self::Expression(_) => at,
             Self::Homogeneous(ray) => point(ray.world_point(s)),
             Self::AnalyticCosine(ray) => point(ray.world_point(s)),
-            Self::Perlin(ray) => point(ray.world_point(s)),
-            Self::ExpressionMedium(ray) => point(ray.world_point(s)),
+            Self::Perlin(ray) => point(ray.field().world_point(s)),
+            Self::ExpressionMedium(ray) => point(ray.field().world_point(s)),
             Self::Voxels(ray) => point(ray.world_point(s)),
         }
     }

@@ -24,8 +24,8 @@ pub struct Work {
 pub enum Expected {
     /// The same on every profile.
     Exactly(f64),
-    /// On a profile that ends no walk; where one does only the closed form tells.
-    AtMost(f64),
+    /// So many where nothing ends a walk, and never less than some; between them only the closed form tells.
+    Between(f64, f64),
 }
 
 /// What is known of a ray: `from` its entry \[length\], over `length`, σ_t at most `upper_bound` where one is
@@ -42,14 +42,22 @@ pub struct RayKnown {
     pub breakpoints: usize,
 }
 
-use Expected::{AtMost, Exactly};
+use Expected::{Between, Exactly};
 
 impl Expected {
-    /// The number, or its bound.
+    /// The number, or its upper bound.
     #[must_use]
     pub fn most(self) -> f64 {
         match self {
-            Exactly(lookups) | AtMost(lookups) => lookups,
+            Exactly(lookups) | Between(_, lookups) => lookups,
+        }
+    }
+
+    /// The number, or its lower bound.
+    #[must_use]
+    pub fn least(self) -> f64 {
+        match self {
+            Exactly(lookups) | Between(lookups, _) => lookups,
         }
     }
 }
@@ -82,7 +90,9 @@ impl Work {
             _ => 0.0,
         };
         match spec {
-            EstimatorSpec::Woodcock { majorant } => once("estimator.majorant", AtMost(ray.depth(*majorant))),
+            EstimatorSpec::Woodcock { majorant } => {
+                once("estimator.majorant", Between(0.0, ray.depth(*majorant)))
+            }
             EstimatorSpec::DoubleParticle { sampling, control } => Self {
                 preparation: explorers(control),
                 estimate: Exactly(ray.sampled(sampling)),
@@ -90,12 +100,14 @@ impl Work {
             },
             EstimatorSpec::SingleParticle { sampling, control, .. } => Self {
                 preparation: explorers(control),
-                estimate: AtMost(ray.sampled(sampling)),
+                estimate: Between(0.0, ray.sampled(sampling)),
                 key: "estimator.sigma_samp",
             },
             EstimatorSpec::LineIntegral { majorant, splits } => {
-                let flight = ray.depth(*majorant).max(1.0);
-                once("estimator.splits", AtMost(f64::from(*splits) * flight))
+                // The first step of every flight ends on the ray, unless nothing is there to collide with.
+                let (splits, flight) = (f64::from(*splits), ray.depth(*majorant));
+                let least = if flight > 0.0 { splits } else { 0.0 };
+                once("estimator.splits", Between(least, splits * flight.max(1.0)))
             }
             EstimatorSpec::RayMarching { steps, .. } => once("estimator.steps", Exactly(f64::from(*steps))),
             EstimatorSpec::Beyond(spec) => Self::beyond(spec, ray),
@@ -111,7 +123,7 @@ impl Work {
                 once(
                     "estimator.majorant",
                     match version {
-                        NextFlightKind::Delta => AtMost(depth),
+                        NextFlightKind::Delta => Between(0.0, depth),
                         NextFlightKind::Ratio | NextFlightKind::Unidirectional => Exactly(depth),
                         // Two walks, and about depth²/2 pairs of their points that are connected.
                         NextFlightKind::Bidirectional => Exactly(2.0 * depth + 0.5 * depth * depth),
@@ -126,7 +138,7 @@ impl Work {
                     PSeriesKind::Cmf => Exactly(pivot + 4.0 * pivot.sqrt() + 2.0),
                     // |Y| is at most y := max(t_c, X − t_c): y^k/k! falls below 1 near k = e y.
                     PSeriesKind::Cumulative => {
-                        AtMost(std::f64::consts::E * pivot.max(ray.depth(declared) - pivot) + 2.0)
+                        Between(0.0, std::f64::consts::E * pivot.max(ray.depth(declared) - pivot) + 2.0)
                     }
                 };
                 once("estimator.pivot", estimate)
@@ -146,7 +158,7 @@ impl Work {
                 };
                 let (preparation, estimate) = match roulette {
                     RouletteSpec::Stop(stop) => (0.0, Exactly(combs(*stop))),
-                    RouletteSpec::SelfTuned => (f64::from(TUNING) * combs(0.0), AtMost(combs(0.0))),
+                    RouletteSpec::SelfTuned => (f64::from(TUNING) * combs(0.0), Between(0.0, combs(0.0))),
                 };
                 Self { preparation, estimate, key: "estimator.teeth" }
             }
@@ -165,21 +177,21 @@ impl Work {
                 once("estimator.cells", ray.in_cells(cells, |range| (rate * range).max(1.0)))
             }
             BeyondSpec::AdaptiveRatio { majorant, .. } => {
-                once("estimator.majorant", AtMost(ray.depth(*majorant)))
+                once("estimator.majorant", Between(0.0, ray.depth(*majorant)))
             }
             BeyondSpec::Regular => once("profile", Exactly(ray.breakpoints as f64 + 1.0)),
             BeyondSpec::Hybrid { majorant } => {
                 let depth = ray.depth(majorant.unwrap_or(declared));
                 Self {
                     preparation: f64::from(PILOTS) * Pilot::lookups(depth) as f64,
-                    estimate: AtMost((Hybrid::USUAL_BUDGET * depth).max(f64::from(teeth_for(depth)))),
+                    estimate: Between(0.0, (Hybrid::USUAL_BUDGET * depth).max(f64::from(teeth_for(depth)))),
                     key: "estimator.majorant",
                 }
             }
             BeyondSpec::Jackknife { teeth } => once("estimator.teeth", Exactly(2.0 * f64::from(*teeth))),
             BeyondSpec::Naive { teeth } => once("estimator.teeth", Exactly(f64::from(*teeth))),
             BeyondSpec::ProgressiveMajorant { start } => {
-                once("estimator.start", AtMost(ray.depth(start.max(declared))))
+                once("estimator.start", Between(0.0, ray.depth(start.max(declared))))
             }
         }
     }
@@ -235,8 +247,99 @@ impl RayKnown {
             // No cell varies by more than the declared majorant.
             CellsSpec::Count(count) => {
                 let count = f64::from(*count);
-                AtMost(count * of(self.depth(self.upper_bound.unwrap_or(0.0)) / count))
+                Between(0.0, count * of(self.depth(self.upper_bound.unwrap_or(0.0)) / count))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::measure_plan;
+    use crate::plan::{MediumLibrary, Plan};
+    use crate::reference::Truth;
+    use crate::spec::{Overrides, Request};
+    use fairflight_media::Tolerance;
+
+    /// What a spec promises for a ray of length 4 with σ_t between 0.2 and 1, and what 20 000 estimates look up.
+    fn promised_and_found(estimator: &str) -> (Work, f64) {
+        let spec = format!(
+            r#"{{ "profile": {{ "kind": "piecewise_linear", "positions": [0, 1, 4], "sigma_t": [0.2, 1, 0.4] }},
+                  "estimator": {estimator}, "samples": 20000, "seed": 1 }}"#
+        );
+        let Ok(Request::Single(experiment)) = Request::parse(&spec, Overrides::default()) else {
+            panic!("{estimator}")
+        };
+        let plan = Plan::of(&experiment, &MediumLibrary::default()).unwrap();
+        let truth = Truth::of(&plan.profile, Tolerance::TIGHT).unwrap();
+        let found = measure_plan(&plan, &truth, &|_| ()).unwrap().lookups_per_sample;
+        (Work::on(&plan.profile, &experiment.estimator), found)
+    }
+
+    #[test]
+    fn what_is_promised_is_looked_up() {
+        for (estimator, tolerance) in [
+            (r#"{ "kind": "double_particle", "sigma_samp": 3 }"#, 0.01),
+            (
+                r#"{ "kind": "double_particle", "sigma_samp": { "edges": [0, 2, 9], "values": [1, 4] } }"#,
+                0.01,
+            ),
+            (r#"{ "kind": "ray_marching", "steps": 7, "jitter": true }"#, 1e-12),
+            (r#"{ "kind": "next_flight", "majorant": 2, "version": "ratio" }"#, 0.01),
+            (r#"{ "kind": "next_flight", "majorant": 2, "version": "unidirectional" }"#, 0.01),
+            (r#"{ "kind": "p_series", "version": "ratio", "pivot": 5 }"#, 0.02),
+            (r#"{ "kind": "p_series", "version": "next_flight", "pivot": 5 }"#, 0.02),
+            (r#"{ "kind": "p_series", "version": "cmf", "pivot": 40 }"#, 0.4),
+            (r#"{ "kind": "generalised_poisson", "pivot": 2, "rate": 6 }"#, 0.01),
+            (r#"{ "kind": "unbiased_ray_marching", "teeth": 9, "endpoint_matching": false }"#, 0.02),
+            (r#"{ "kind": "unbiased_ray_marching", "teeth": 5, "segments": 6, "roulette": 0.3 }"#, 0.2),
+            (
+                r#"{ "kind": "telescoping", "teeth": 8, "level_ratio": 0.8, "endpoint_matching": false }"#,
+                0.05,
+            ),
+            (r#"{ "kind": "jittered_ratio", "majorant": 1.5, "epsilon": 0.5 }"#, 0.02),
+            (
+                r#"{ "kind": "residual_cells", "rate": 2,
+                     "cells": { "edges": [0, 1, 4], "minorants": [0, 0], "majorants": [2, 3] } }"#,
+                0.02,
+            ),
+            (r#"{ "kind": "jackknife", "teeth": 6 }"#, 1e-12),
+            (r#"{ "kind": "naive", "teeth": 6 }"#, 1e-12),
+        ] {
+            let (work, found) = promised_and_found(estimator);
+            let Exactly(promised) = work.estimate else { panic!("{estimator}: {work:?}") };
+            assert!((found / promised - 1.0).abs() <= tolerance, "{estimator}: {promised}, found {found}");
+        }
+        for estimator in [
+            r#"{ "kind": "woodcock", "majorant": 2 }"#,
+            r#"{ "kind": "single_particle", "version": "adaptive", "albedo": 0.5, "sigma_samp": 2 }"#,
+            r#"{ "kind": "line_integral", "majorant": 2, "splits": 5 }"#,
+            r#"{ "kind": "next_flight", "majorant": 2, "version": "delta" }"#,
+            r#"{ "kind": "p_series", "version": "cumulative", "pivot": 4 }"#,
+            r#"{ "kind": "unbiased_ray_marching", "teeth": 4, "roulette": "self_tuned",
+                 "endpoint_matching": false }"#,
+            r#"{ "kind": "jittered_ratio", "cells": 5, "epsilon": 0.5 }"#,
+            r#"{ "kind": "residual_cells", "cells": 5 }"#,
+            r#"{ "kind": "adaptive_ratio", "majorant": 2, "floor": 0.1 }"#,
+            r#"{ "kind": "hybrid", "majorant": 2 }"#,
+            r#"{ "kind": "progressive_majorant", "start": 0.5 }"#,
+        ] {
+            let (work, found) = promised_and_found(estimator);
+            let Between(least, most) = work.estimate else { panic!("{estimator}: {work:?}") };
+            assert!(least <= found && found <= 1.01 * most, "{estimator}: {least} to {most}, found {found}");
+        }
+    }
+
+    #[test]
+    fn rates_beyond_all_numbers_are_infinite_and_never_none() {
+        let ray = RayKnown { from: 0.0, length: 1e305, upper_bound: None, breakpoints: 0 };
+        assert_eq!((ray.depth(0.0), ray.depth(1e10)), (0.0, f64::INFINITY));
+        assert_eq!(strata(f64::INFINITY, 0.5), f64::INFINITY);
+        let nowhere = RayKnown { length: 0.0, ..ray };
+        assert_eq!(nowhere.depth(f64::MAX), 0.0);
+        assert_eq!(strata(0.0, 1e-300), 1.0);
+        let work = Work { preparation: f64::INFINITY, estimate: Exactly(0.0), key: "estimator" };
+        assert_eq!(work.total(1, 0.0), f64::INFINITY);
     }
 }

@@ -10,8 +10,8 @@ use super::tile::Tile;
 use super::{Moments, moments};
 use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::plan::{
-    AnyMedium, AnyProfile, Expected, Field, FieldJob, KnownField, MediumLibrary, RayKnown, ScenePlan,
-    Spectra, Work,
+    AnyMedium, AnyProfile, Expected, Field, FieldJob, IntegratorPlan, KnownField, MediumLibrary, RayKnown,
+    ScenePlan, Spectra, Work,
 };
 use crate::spec::{IntegratorSpec, RayEstimatorSpec, SceneSpec, SingleScatteringSpec, VplSpec};
 use crate::{Failure, interrupt};
@@ -29,6 +29,7 @@ const MOST: f64 = 1e7;
 const LIGHT_PATHS: u32 = 64;
 const SPLITS: u32 = 4;
 const MEAN_CELLS: u32 = 16;
+const EYE_SAMPLES: u32 = 4;
 /// Of more look-ups the rate is the reason, of fewer the number of samples.
 const MOST_ORDINARY: f64 = 1e3;
 /// Memory for the pixels, and for virtual point lights \[bytes\].
@@ -83,7 +84,9 @@ pub(super) fn check(
                     let lookups = walks.virtual_lights(vpl, (f64::from(samples), paths), shadow)?;
                     ("integrator.light_paths", lookups)
                 }
-                _ if shadow > MOST_ORDINARY => ("integrator.estimator", paths * walks.each),
+                IntegratorSpec::PathTracer(_) if shadow > MOST_ORDINARY => {
+                    ("integrator.estimator", paths * walks.each)
+                }
                 _ => ("integrator.sigma_samp", paths * walks.each),
             }
         }
@@ -154,7 +157,7 @@ impl Chords {
         let work = Work::of(estimator, RayKnown { from: 0.0, length, upper_bound, breakpoints: 0 });
         let lookups = match work.estimate {
             Expected::Exactly(lookups) => lookups,
-            Expected::AtMost(lookups) => lookups * self.passed,
+            Expected::Between(least, most) => least.max(most * self.passed),
         };
         (work.preparation + lookups).max(1.0)
     }
@@ -165,13 +168,19 @@ impl Chords {
         self.estimate(&spec.estimator, 1.0) + points * (1.0 + shadow)
     }
 
-    /// Look-ups of a shadow ray or a connection of an integrator that has some: over half of the bounds.
+    /// Look-ups that no limit of collisions cuts: of a shadow ray or a connection, over half of the bounds; of the background behind
+    /// photons, by ratio tracking; of the first flight of a split.
     fn shadow(&self, integrator: &IntegratorSpec, plan: &ScenePlan) -> f64 {
         let transport = match integrator {
             IntegratorSpec::PathTracer(spec) => &spec.transport,
             IntegratorSpec::Vpl(spec) => &spec.transport,
-            // By the walk itself.
-            _ => return 1.0,
+            IntegratorSpec::LineSplitting { majorant, .. } => {
+                return (majorant * self.mean * self.passed).max(1.0);
+            }
+            _ => {
+                let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
+                return if photons { (rate(plan) * self.mean).max(1.0) } else { 1.0 };
+            }
         };
         let inside = Self { mean: self.extent, profile: None, ..*self };
         match &transport.estimator {
@@ -220,7 +229,7 @@ impl Walks {
         chords: &Chords,
         shadow: f64,
     ) -> Result<Self, Failure> {
-        let rate = plan.integrator.walk().map_or(0.0, |walk| walk.walk().sampling().highest());
+        let rate = rate(plan);
         let most = (MOST / WALKS / shadow).clamp(16.0, 1e5) as u64;
         let mut pilot = reduced(spec, SIDE, 1)?;
         let mut scale = 1.0;
@@ -229,6 +238,8 @@ impl Walks {
             IntegratorSpec::Vpl(vpl) => {
                 vpl.light_paths = vpl.light_paths.min(LIGHT_PATHS);
                 vpl.local_mean_cells = vpl.local_mean_cells.min(MEAN_CELLS);
+                scale = f64::from(vpl.eye_samples) / f64::from(vpl.eye_samples.min(EYE_SAMPLES));
+                vpl.eye_samples = vpl.eye_samples.min(EYE_SAMPLES);
             }
             IntegratorSpec::LineSplitting { splits, .. } => {
                 scale = f64::from(*splits) / f64::from((*splits).min(SPLITS));
@@ -267,6 +278,11 @@ impl Walks {
         let traced = sets * light_paths * self.each;
         Ok(traced + paths * (self.each + f64::from(vpl.eye_samples) * lights * shadow.max(1.0)))
     }
+}
+
+/// The greatest sampling extinction of the walks; 0 without any.
+fn rate(plan: &ScenePlan) -> f64 {
+    plan.integrator.walk().map_or(0.0, |walk| walk.walk().sampling().highest())
 }
 
 fn draw(pilot: &SceneSpec, library: &MediumLibrary) -> Result<Moments, Failure> {

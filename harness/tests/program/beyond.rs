@@ -116,9 +116,9 @@ fn what_an_estimator_needs_to_know_is_said() {
         (expression, r#"{ "kind": "p_series", "version": "cmf" }"#, "p_series needs a pivot; give `pivot`"),
         (expression, r#"{ "kind": "unbiased_ray_marching" }"#, "give `teeth` or `pivot`"),
         (
-            expression,
+            r#"{ "kind": "expression", "sigma_t": "1/s", "length": 2 }"#,
             r#"{ "kind": "residual_cells", "cells": 4 }"#,
-            "an expression does not know its bounds in cells",
+            "no bounds of sigma_t are found between s = 0 and s = 0.5",
         ),
         (
             expression,

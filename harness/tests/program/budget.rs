@@ -47,7 +47,7 @@ fn experiments_that_would_take_days_are_refused() {
         (
             EVEN,
             r#"{ "kind": "line_integral", "majorant": 1e6, "splits": 10000000 }"#,
-            1000,
+            100_000,
             "estimator.splits",
         ),
         (

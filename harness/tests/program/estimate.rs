@@ -207,3 +207,37 @@ fn a_result_that_cannot_be_written_has_a_code_of_its_own() {
     );
     assert_eq!(code, 3);
 }
+
+/// Between 0.7 and 0.7 nothing is interpolated to 0.7000000000000001.
+#[test]
+fn equal_nodes_exceed_no_majorant() {
+    let profile = r#"{ "kind": "piecewise_linear", "positions": [0, 0.7, 3], "sigma_t": [0.7, 0.7, 0.7] }"#;
+    for estimator in [
+        r#"{ "kind": "woodcock", "majorant": 0.7 }"#,
+        r#"{ "kind": "jittered_ratio", "cells": 13, "epsilon": 0.5 }"#,
+        r#"{ "kind": "residual_cells", "cells": 13 }"#,
+        r#"{ "kind": "double_particle", "sigma_samp": 0.7 }"#,
+    ] {
+        let result = estimate(&spec(profile, estimator, 2000));
+        assert_ne!(result["verdict"]["sound"], false, "{estimator}: {}", result["verdict"]["reason"]);
+    }
+}
+
+#[test]
+fn dense_media_are_answered_with_numbers() {
+    let half = r#"{ "kind": "piecewise_constant", "edges": [0, 1, 2], "sigma_t": [0.1, 4e4] }"#;
+    let layer =
+        r#"{ "kind": "piecewise_constant", "edges": [0, 1, 1.00001, 2], "sigma_t": [0.1, 4e4, 0.1] }"#;
+    let eq21 = r#"{ "kind": "ray", "medium": { "kind": "analytic_cosine", "scale": 2000 }, "origin": [0, 0, 0], "direction": [0, 0, 3] }"#;
+    let telescoping = r#"{ "kind": "telescoping", "teeth": 5, "level_ratio": 0.8 }"#;
+    let marching = r#"{ "kind": "unbiased_ray_marching", "teeth": 3, "segments": 8 }"#;
+    for (profile, estimator) in
+        [(half, telescoping), (eq21, telescoping), (layer, marching), (half, marching), (layer, telescoping)]
+    {
+        // What a sample so small says of estimates so wild is not asked here.
+        let outcome = harness(&["estimate", "-"], &spec(profile, estimator, 4000));
+        assert!(outcome.code < 2, "{estimator}: {}", outcome.stderr);
+        let result: Value = serde_json::from_str(&outcome.stdout).unwrap();
+        assert!(number(&result, "/estimate/mean").is_finite(), "{estimator}: {result}");
+    }
+}

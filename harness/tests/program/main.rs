@@ -6,10 +6,13 @@ mod common;
 mod estimate;
 #[cfg(unix)]
 mod interrupt;
+mod lawful_runs;
 mod passes;
+mod references;
 mod refusals;
 mod render;
 mod render_refusals;
 mod report;
 mod surfaces;
+mod verdicts;
 mod virtual_lights;

@@ -308,8 +308,7 @@ fn a_field_below_zero_is_no_field_for_woodcock() {
 }
 
 #[test]
-fn a_majorant_that_only_a_look_up_refutes() {
-    // The peak is too narrow for the nodes of the quadrature of a field without breakpoints to be sure to meet it.
+fn a_majorant_that_a_narrow_peak_refutes() {
     let peak =
         r#"{ "kind": "expression", "sigma_t": "0.1 + 5*max(0, 1 - abs(s - 1.2345)*1e4)", "length": 2 }"#;
     let woodcock = r#"{ "kind": "woodcock", "majorant": 0.5 }"#;

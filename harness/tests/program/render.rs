@@ -156,7 +156,7 @@ fn a_lamp_in_view_leaves_the_room_visible() {
     room["samples_per_pixel"] = json!(4);
     let mut stronger = room.clone();
     // The same lamp, a quarter of the picture: it is looked at from below.
-    stronger["camera"]["origin"] = json!([0, -0.2, 0]);
+    stronger["camera"]["origin"] = json!([0, -0.9, 0]);
     stronger["camera"]["look_at"] = json!([0, 0.95, 0.1]);
     stronger["surfaces"][5]["emission"] = json!(500);
     for scene in [room, stronger] {

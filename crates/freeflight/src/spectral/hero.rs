@@ -265,6 +265,30 @@ mod tests {
         assert!(exact > (-0.8_f64).exp() && exact < 2.0 * (-0.4_f64).exp());
     }
 
+    /// A path that hardly counts any more: in products of denormal weights the shares of the wavelengths would be 0/0.
+    #[test]
+    fn weights_at_the_ends_of_the_numbers_are_those_in_the_middle() {
+        let field = Scaled::new(constant(1.0), [0.9, 0.2]).unwrap();
+        let hero = HeroWavelength::new(constant(1.3));
+        let average = SpectralTracking::new(AverageScheme, constant(1.3));
+        let both = |incoming: [f64; 2], seed: u64| {
+            [
+                hero.sample_from(&field, incoming, &mut Seeded::new(seed)),
+                average.sample_from(&field, incoming, &mut Seeded::new(seed)),
+            ]
+        };
+        for unit in [f64::from_bits(1 << 20), 2.0_f64.powi(1000)] {
+            for seed in 0..100 {
+                for (near, far) in both([1.0, 0.5], seed).into_iter().zip(both([unit, 0.5 * unit], seed)) {
+                    assert_eq!(far.of(0).distance(), near.of(0).distance());
+                    for (far, near) in far.weights().into_iter().zip(near.weights()) {
+                        assert_relative_eq!(far / unit, near, max_relative = 1e-5);
+                    }
+                }
+            }
+        }
+    }
+
     #[test]
     fn an_event_that_the_hero_cannot_draw_is_not_drawn() {
         // Hard case 7: the ratio of the first rounds to 1 or to the number below it.

@@ -41,6 +41,7 @@ mod scheme;
 mod separate;
 mod shared;
 mod tracking;
+mod tracking_law;
 
 pub use decomposition::DecompositionTracking;
 pub use flight::{SpectralFlight, SpectralFreeFlight};

@@ -1,14 +1,9 @@
 //! Spectral tracking: one walk through a sampling extinction, with a weight for each wavelength (kutz-2017).
 
 use super::flight::centred;
-use super::scheme::{MaxScheme, Scheme};
-use super::{AverageScheme, SpectralFlight, SpectralFreeFlight};
-use crate::ClosedForm;
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race, powers, times_exp};
-use fairflight_media::{
-    Integral, InvertOpticalThickness, RayQuadrature, SpectralExtinction, Tolerance, Vacuum, Wavelength,
-    rounding_of_difference,
-};
+use super::scheme::Scheme;
+use super::{SpectralFlight, SpectralFreeFlight};
+use fairflight_media::{InvertOpticalThickness, SpectralExtinction, Vacuum, rounding_of_difference};
 use fairflight_sources::UniformSource;
 
 /// Flies through σ_samp; at each tentative collision one decision is made for all wavelengths, by a [`Scheme`].
@@ -31,14 +26,14 @@ use fairflight_sources::UniformSource;
 /// ends first, the flight has collided there, with the weights as they are: it has lost c more per length and gained
 /// c T_l, whatever l. A collision with the control costs no look-up.
 ///
-/// **Moments.** With [`MaxScheme`] events do not depend on the past, and with P(s) the weights have a product law,
+/// **Moments.** (`tracking_law.rs`) With [`MaxScheme`](super::MaxScheme) events do not depend on the past, and with P(s) the weights have a product law,
 ///
 /// > M_k(s) = exp(∫_0^s σ_samp ((1 − r_l)^k (1 − P)^(1 − k) − 1) − c),
 /// > E\[weight_l^k; collided\] = ∫ (c + σ_samp r_l^k P^(1 − k)) M_k ds,   E\[weight_l^k; escaped\] = M_k(length).
 ///
 /// All are finite on a finite ray. For 0 ≤ r ≤ 1 the second grows as exp(∫ σ_samp ((1 − r_l)² (1 + r_max − r_min)/(1 − r_min) − 1)):
 /// in an endless medium with σ_samp = σ_max it is infinite for the thinnest wavelength from σ_max/σ_min = (3 + √5)/2 = 2.618 on, and a
-/// loose majorant makes it worse, down to 2. With [`AverageScheme`] and 0 ≤ r_l ≤ 1 all weights lie in \[0, N\], so that
+/// loose majorant makes it worse, down to 2. With [`AverageScheme`](super::AverageScheme) and 0 ≤ r_l ≤ 1 all weights lie in \[0, N\], so that
 /// E\[weight_l²\] ≤ N E\[weight_l\]; only the mean has a closed form.
 ///
 /// **Cost.** ∫ σ_samp · P(still under way) ds look-ups; for the average scheme within its bound that is the mean over
@@ -49,8 +44,8 @@ use fairflight_sources::UniformSource;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralTracking<S, R, C = Vacuum> {
     scheme: S,
-    sampling: R,
-    control: C,
+    pub(super) sampling: R,
+    pub(super) control: C,
 }
 
 impl<S: Scheme, R: InvertOpticalThickness> SpectralTracking<S, R> {
@@ -71,7 +66,7 @@ impl<S: Scheme, R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTr
 
     /// r_l at `s`.
     #[inline]
-    fn ratios<const N: usize>(&self, s: f64, sigma_t: &[f64; N]) -> [f64; N] {
+    pub(super) fn ratios<const N: usize>(&self, s: f64, sigma_t: &[f64; N]) -> [f64; N] {
         let (control, sampling) = (self.control.sigma_t(s), self.sampling.sigma_t(s));
         sigma_t.map(|sigma| (sigma - control) / sampling)
     }
@@ -129,166 +124,15 @@ where
     }
 }
 
-/// The event probabilities at one place, with the max scheme.
-struct Events {
-    control: f64,
-    sampling: f64,
-    /// Of the wavelength in question.
-    ratio: f64,
-    collides: f64,
-    passes: f64,
-}
-
-impl<R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTracking<MaxScheme, R, C> {
-    fn events<F: SpectralExtinction<N>, const N: usize>(&self, field: &Wavelength<F, N>, s: f64) -> Events {
-        let (control, sampling) = (self.control.sigma_t(s), self.sampling.sigma_t(s));
-        if sampling == 0.0 {
-            return Events { control, sampling, ratio: 0.0, collides: 0.0, passes: 1.0 };
-        }
-        let ratios = self.ratios(s, &field.spectrum().sigma_t(s));
-        let [collides, passes] = MaxScheme.sizes(&[1.0; N], &ratios);
-        let sum = collides + passes;
-        let ratio = ratios[field.index()];
-        Events { control, sampling, ratio, collides: collides / sum, passes: passes / sum }
-    }
-
-    /// Splits the ray where max |r_l| and max |1 − r_l| are not smooth: where a ratio passes 0 or 1, and where two are as far from
-    /// either: r_i = r_j, r_i = −r_j, r_i = 2 − r_j.
-    fn split_at_kinks<F, const N: usize>(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) where
-        F: SpectralExtinction<N> + Copy,
-    {
-        let spectrum = *quadrature.field().spectrum();
-        let mut split = |function: &dyn Fn(&[f64; N]) -> f64| {
-            quadrature.split_at_zeros(tolerance, &|s, _| {
-                let may_collide = self.sampling.sigma_t(s) > 0.0;
-                if may_collide { function(&self.ratios(s, &spectrum.sigma_t(s))) } else { 1.0 }
-            });
-        };
-        for i in 0..N {
-            split(&|r| r[i]);
-            split(&|r| r[i] - 1.0);
-            for j in 0..i {
-                split(&|r| r[i] - r[j]);
-                split(&|r| r[i] + r[j]);
-                split(&|r| r[i] + r[j] - 2.0);
-            }
-        }
-    }
-}
-
-impl Events {
-    /// σ_samp times the k-th moment of the weight of a collision, k = 1 … 8.
-    fn collided(&self) -> [f64; HIGHEST_MOMENT] {
-        moments(self.sampling, self.ratio, self.collides)
-    }
-
-    /// d ln M_k/ds.
-    fn growth(&self) -> [f64; HIGHEST_MOMENT] {
-        moments(self.sampling, 1.0 - self.ratio, self.passes).map(|rate| rate - self.sampling - self.control)
-    }
-}
-
-/// rate · probability · (factor/probability)^k; nothing where the event has no probability.
-fn moments(rate: f64, factor: f64, probability: f64) -> [f64; HIGHEST_MOMENT] {
-    if probability == 0.0 {
-        return [0.0; HIGHEST_MOMENT];
-    }
-    powers(factor / probability).map(|power| rate * probability * power)
-}
-
-impl<F, R, C, const N: usize> ClosedForm<Wavelength<F, N>> for SpectralTracking<MaxScheme, R, C>
-where
-    F: SpectralExtinction<N> + Copy,
-    R: InvertOpticalThickness,
-    C: InvertOpticalThickness,
-{
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        self.split_at_kinks(quadrature, tolerance);
-        let field = *quadrature.field();
-        quadrature.integrate_nested(
-            tolerance,
-            |s, _| self.events(&field, s).growth(),
-            |s, _, growth| {
-                let (events, scores) = (self.events(&field, s), powers(score(s)));
-                let collided = events.collided();
-                std::array::from_fn(|i| times_exp(events.control + collided[i], growth[i], scores[i]))
-            },
-        )
-    }
-
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        self.split_at_kinks(quadrature, tolerance);
-        let field = *quadrature.field();
-        quadrature.integrate(tolerance, |s, _| self.events(&field, s).growth()).value.map(f64::exp)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        self.split_at_kinks(quadrature, tolerance);
-        let field = *quadrature.field();
-        Some(lookups_of_a_race(quadrature, tolerance, &|s, _| {
-            let events = self.events(&field, s);
-            [events.control, events.sampling * events.collides, events.sampling * events.passes]
-        }))
-    }
-}
-
-/// Within 0 ≤ σ_l − c ≤ σ_samp for every l. Of the weights only the mean has a closed form, the rest is NaN; for look-ups
-/// see [`super::HeroWavelength`].
-impl<F, R, C, const N: usize> ClosedForm<Wavelength<F, N>> for SpectralTracking<AverageScheme, R, C>
-where
-    F: SpectralExtinction<N> + Copy,
-    R: InvertOpticalThickness,
-    C: InvertOpticalThickness,
-{
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        super::hero::mean_of_collisions(quadrature, tolerance, score)
-    }
-
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        super::hero::mean_of_escapes(quadrature, tolerance)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        Some(super::hero::lookups_of_a_mixture(quadrature, tolerance, &self.control, &self.sampling))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Flight;
+    use crate::spectral::{AverageScheme, MaxScheme};
+    use crate::{ClosedForm, Flight};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseConstant, Profiles, Scaled};
+    use fairflight_media::{
+        Constant, PiecewiseConstant, Profiles, RayQuadrature, Scaled, Tolerance, Wavelength,
+    };
     use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
 
     fn constant(sigma: f64) -> Constant {
@@ -318,23 +162,6 @@ mod tests {
         let sample = |u: f64| tracking.sample(&field, &mut Scripted::new([0.1, u, LARGEST_VARIATE]));
         near(sample(0.374), [4.0 / 3.0, 2.0 / 3.0]);
         near(sample(0.376), [0.8, 1.2]);
-    }
-
-    #[test]
-    fn weights_at_the_ends_of_the_numbers_are_those_in_the_middle() {
-        // A path that hardly counts any more: in products of denormal weights the shares of the wavelengths would be 0/0.
-        let field = spectrum([0.9, 0.2]);
-        let tracking = SpectralTracking::new(AverageScheme, constant(1.3));
-        for unit in [f64::from_bits(1 << 20), 2.0_f64.powi(1000)] {
-            for seed in 0..100 {
-                let near = tracking.sample_from(&field, [1.0, 0.5], &mut Seeded::new(seed));
-                let far = tracking.sample_from(&field, [unit, 0.5 * unit], &mut Seeded::new(seed));
-                assert_eq!(far.of(0).distance(), near.of(0).distance());
-                for (far, near) in far.weights().into_iter().zip(near.weights()) {
-                    assert_relative_eq!(far / unit, near, max_relative = 1e-5);
-                }
-            }
-        }
     }
 
     #[test]

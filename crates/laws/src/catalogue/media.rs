@@ -67,7 +67,7 @@ pub(super) fn on_every_medium() -> Vec<Check> {
         .expect(LAWFUL);
     let bounds = Bounds::aligned_box(dvec3(1.0, 1.0, 1.0), dvec3(3.0, 3.0, 3.0)).expect(LAWFUL);
     let ray = ray(Arc::new(perlin), bounds, dvec3(0.0, 1.5, 1.2), dvec3(1.0, 0.2, 0.3)).expect(LAWFUL);
-    let mut specimen = Specimen::integrated("perlin", ray, Tolerance::to(1e-8));
+    let mut specimen = Specimen::certified("perlin", ray, Tolerance::to(1e-8));
     specimen.frugality = 4;
     let specimen = Arc::new(specimen);
     checks.extend(of_positive(&specimen, &SPLITS[..2]));
@@ -79,7 +79,7 @@ pub(super) fn on_every_medium() -> Vec<Check> {
     checks.push(jittered(&specimen));
 
     let expression = ExpressionProfile::new("0.3 + 0.25*sin(7*s)*exp(-0.2*s)", 9.0, Some(0.6)).expect(LAWFUL);
-    let specimen = Arc::new(Specimen::integrated("expression", expression, Tolerance::TIGHT));
+    let specimen = Arc::new(Specimen::certified("expression", expression, Tolerance::TIGHT));
     checks.extend(of_positive(&specimen, &SPLITS));
     checks.extend(of_any_sign(&specimen, 0.6, 0.3, 17));
     checks.push(jittered(&specimen));

@@ -7,8 +7,8 @@ use crate::{CheckResult, Expectation, Run, Truth, Unit};
 use fairflight_collision::CollisionModel;
 use fairflight_freeflight::lookups_of_a_walk;
 use fairflight_media::{
-    Breakpoints, Extinction, InvertOpticalThickness, Majorant, Minorant, OpticalThickness, RayQuadrature,
-    Tolerance,
+    Breakpoints, Certified, Enclosed, Extinction, InvertOpticalThickness, Majorant, Minorant,
+    OpticalThickness, RayQuadrature, Tolerance,
 };
 use fairflight_stats::Scores;
 use fairflight_transmittance::{
@@ -29,9 +29,20 @@ pub(super) struct Specimen<F> {
     pub(super) field: F,
     /// Divides the samples where look-ups are expensive.
     pub(super) frugality: u64,
-    closed_form: Option<Truth>,
+    truth: fn(&F) -> Truth,
     pub(super) tolerance: Tolerance,
     quadrature: OnceLock<(RayQuadrature<F>, Truth)>,
+}
+
+impl<F> Specimen<Certified<F>>
+where
+    F: Enclosed,
+    Certified<F>: SpecimenField,
+{
+    /// A profile whose optical thickness has a certificate; other integrals are to `tolerance`.
+    pub(super) fn certified(name: &'static str, field: F, tolerance: Tolerance) -> Self {
+        Self::known(name, Certified::new(field), |field| Truth::certified(field.certificate()), tolerance)
+    }
 }
 
 impl<F: SpecimenField> Specimen<F> {
@@ -40,21 +51,23 @@ impl<F: SpecimenField> Specimen<F> {
     where
         F: OpticalThickness,
     {
-        let truth = Truth::closed_form(&field);
-        Self { closed_form: Some(truth), ..Self::integrated(name, field, Tolerance::TIGHT) }
+        Self::known(name, field, Truth::closed_form, Tolerance::TIGHT)
     }
 
-    /// A profile whose optical thickness is found by quadrature to `tolerance`.
+    /// The same, its closed form put aside: the optical thickness is found by quadrature.
     pub(super) fn integrated(name: &'static str, field: F, tolerance: Tolerance) -> Self {
-        Self { name, field, frugality: 1, closed_form: None, tolerance, quadrature: OnceLock::new() }
+        let truth = |field: &F| Truth::quadrature(&mut RayQuadrature::new(field, &[]), Tolerance::TIGHT);
+        Self::known(name, field, truth, tolerance)
+    }
+
+    fn known(name: &'static str, field: F, truth: fn(&F) -> Truth, tolerance: Tolerance) -> Self {
+        Self { name, field, frugality: 1, truth, tolerance, quadrature: OnceLock::new() }
     }
 
     pub(super) fn prepared(&self) -> (RayQuadrature<F>, Truth) {
         let (quadrature, truth) = self.quadrature.get_or_init(|| {
-            let mut quadrature = RayQuadrature::new(self.field.clone(), &[]);
-            let truth =
-                self.closed_form.unwrap_or_else(|| Truth::quadrature(&mut quadrature, self.tolerance));
-            (quadrature, truth)
+            let truth = (self.truth)(&self.field);
+            (RayQuadrature::new(self.field.clone(), &[]), truth)
         });
         (quadrature.clone(), *truth)
     }

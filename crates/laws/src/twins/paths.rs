@@ -1,7 +1,8 @@
 //! Mistakes in walks through space and in single scattering along a ray.
 //!
 //! The mean of each is derived: a twin counts as rejected if the law of the right one rejects it, and its own mean does not.
-//! A walk in space has no closed variance, so that the z that a twin states is measured.
+//! A walk in space has no closed variance, so that the z that a twin states is measured. What rejects a twin is the range of the right
+//! estimates, derived beside each: it bounds what a sample can lack.
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Rejection, Twin};
@@ -20,7 +21,7 @@ use fairflight_paths::single_scattering::{
 use fairflight_paths::{Integrator, Ratio, Uniform};
 use fairflight_scene::{Background, Lights, Source, Volume};
 use fairflight_sources::{Seeded, UniformSource};
-use fairflight_stats::{Reference, judge};
+use fairflight_stats::{Reference, Scores, judge};
 use fairflight_transmittance::{Explorers, Interaction, LineIntegral, TransmittanceEstimator};
 use glam::{DVec3, dvec3};
 use std::f64::consts::PI;
@@ -31,8 +32,9 @@ fn tried(estimate: impl FnMut(&mut Seeded) -> f64, right: &Reference, derived: f
         Ok(measured) => measured,
         Err(error) => return Rejection::exact(true, error.to_string()),
     };
-    let verdict = judge(&measured, right, run.alpha);
-    let own = judge(&measured, &Reference { mean: derived, ..*right }, run.alpha);
+    let right = right.with_mild_tails();
+    let verdict = judge(&measured, &right, run.alpha);
+    let own = judge(&measured, &Reference { mean: derived, ..right }, run.alpha);
     Rejection {
         rejected: verdict.sound == Some(false) && own.sound != Some(false),
         mean_z: verdict.mean_z,
@@ -94,8 +96,21 @@ impl Cube {
         }
     }
 
-    fn reference(&self) -> Reference {
-        single_scattering::reference(&self.volume, &self.lights, &[self.line])
+    /// What estimates that lie between 0 and `most` are judged by.
+    fn reference(&self, most: f64) -> Reference {
+        let scores = Scores::Bounded { minimum: 0.0, maximum: most };
+        Reference { scores, ..single_scattering::reference(&self.volume, &self.lights, &[self.line]) }
+    }
+
+    /// D, the distance of the light from the line.
+    fn aside(&self) -> f64 {
+        (LIGHT - self.line.origin).truncate().length()
+    }
+
+    /// A bound of the integrand, any transmittance of the shadow ray up to 1 included.
+    fn greatest(&self) -> f64 {
+        let irradiance = POWER / (4.0 * PI * self.aside() * self.aside());
+        self.volume.albedo * self.volume.phase.eval(0.0) * irradiance
     }
 
     /// Distance, extinction, and all of the integrand of eq. 22 but T(0, s), whose logarithm is −s.
@@ -170,9 +185,11 @@ fn without_albedo(run: Run) -> Rejection {
     };
     let of = |albedo| Slab { optical_thickness: tau, albedo, legendre: vec![1.0] }.respond(lit);
     let right = of(albedo);
+    // The radiance 1 of the background, times an energy of at most 1.
+    let scores = Scores::Bounded { minimum: 0.0, maximum: 1.0 };
     tried(
         estimate,
-        &Reference { error: right.error, ..Reference::exact(right.reflected) },
+        &Reference { error: right.error, scores, ..Reference::exact(right.reflected) },
         of(1.0).reflected,
         run,
     )
@@ -220,7 +237,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "weight_behind_the_collision",
             "the walk's weight behind the point that scores, for that before it (0.6995 for 0.8186 in the errata's case)",
             cube,
-            (150_000, Evident::Mean { z: 681.8 }),
+            (300_000, Evident::Mean { z: 964.2 }),
             |run| {
                 let cube = Cube::new();
                 let model = DoubleParticle { albedo: Albedo::default() };
@@ -231,7 +248,8 @@ pub(super) fn twins() -> Vec<Twin> {
                 let mut twin =
                     SingleScattering::new(&cube.volume, &cube.lights, sampling, walk, shadow, explorers)
                         .expect(LAWFUL);
-                let right = cube.reference();
+                // Scores of at most greatest/σ_samp, 1/3 of that, 1/9 …: at most 3/2 · greatest/σ_samp.
+                let right = cube.reference(1.5 * cube.greatest() / SIGMA_SAMP);
                 let derived = right.mean * (1.0 - 1.0 / SIGMA_SAMP);
                 tried(|source| twin.radiance(&cube.line, source), &right, derived, run)
             },
@@ -250,7 +268,9 @@ pub(super) fn twins() -> Vec<Twin> {
                 let angle = (LENGTH - closest).atan2(distance) - (-closest).atan2(distance);
                 let jacobian = |s: f64| distance / (distance * distance + (s - closest) * (s - closest));
                 let derived = cube.integral(jacobian);
-                tried(|source| cube.by_source(|_s| 1.0 / angle, source), &cube.reference(), derived, run)
+                // 1/d² over D/(angle d²).
+                let right = cube.reference(cube.greatest() * cube.aside() * angle);
+                tried(|source| cube.by_source(|_s| 1.0 / angle, source), &right, derived, run)
             },
         ),
         // The weights sum to σ/(σ + n p) + p/(p + σ).
@@ -269,7 +289,9 @@ pub(super) fn twins() -> Vec<Twin> {
                 };
                 let of_attenuation = |s: f64| SIGMA_SAMP / (SIGMA_SAMP + SAMPLES * cauchy.pdf_distance(s));
                 let derived = cube.integral(|s| of_attenuation(s) + of_source(s));
-                tried(|source| cube.by_both(of_source, source), &cube.reference(), derived, run)
+                // 3/2 · greatest/σ_samp from the walk, greatest/σ_samp from each sample of the source.
+                let right = cube.reference((1.5 + SAMPLES) * cube.greatest() / SIGMA_SAMP);
+                tried(|source| cube.by_both(of_source, source), &right, derived, run)
             },
         ),
         // The radiance of a slab without absorption.

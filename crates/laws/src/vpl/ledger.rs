@@ -32,7 +32,7 @@ where
         paths.trace(1.0, &mut ledger, source, |_| {});
         ledger.absorbed + ledger.escaped
     })?;
-    Ok(judge(&measured, &Reference::exact(power), run.alpha))
+    Ok(judge(&measured, &Reference::exact(power).with_mild_tails(), run.alpha))
 }
 
 /// **Law.** The sum of power · g(x) over the virtual point lights of a path is `expected`, whether those far away are thinned or not.
@@ -58,5 +58,5 @@ where
         paths.trace(1.0, &mut Ledger::empty(), source, |vpl| sum += vpl.power * g(&vpl));
         sum
     })?;
-    Ok(judge(&measured, &Reference::exact(expected), run.alpha))
+    Ok(judge(&measured, &Reference::exact(expected).with_mild_tails(), run.alpha))
 }

@@ -80,7 +80,7 @@ impl Local {
         let measured = measure(run.seed, run.samples, |source| {
             estimate(&mut gather, &mut correction, pairing, &self.y, source)
         })?;
-        Ok(judge(&measured, reference, run.alpha))
+        Ok(judge(&measured, &reference.with_mild_tails(), run.alpha))
     }
 
     /// The right side of the law. Its error is the difference to half of the resolution: the midpoint rule converges with the
@@ -90,6 +90,21 @@ impl Local {
         let [coarse, fine] = [1, 2].map(|factor| self.compensation(factor));
         let connections = self.connections(&self.y);
         Reference { error: (fine - coarse).abs(), ..Reference::exact(connections + fine) }
+    }
+
+    /// Bounds of the bounded connections at a vertex, and of what one in the region gets of the point lights.
+    #[must_use]
+    pub(crate) fn greatest(&self) -> (f64, f64) {
+        let g = self.mean_cosine;
+        let scatters = FRAC_1_PI.max((1.0 + g) / (4.0 * PI * (1.0 - g) * (1.0 - g)));
+        let power: f64 = self.vpls.iter().map(|vpl| vpl.power).sum();
+        let radius = 1.0 / self.bound.sqrt();
+        let emitters = self.lights.sources.iter().map(|light| {
+            let Source::Point { position, power } = light else { return 0.0 };
+            let distance = position.distance(self.y.position) - radius;
+            power / (4.0 * PI * distance * distance) * scatters
+        });
+        (power * scatters * scatters * self.bound, emitters.sum())
     }
 
     /// What bounding takes away from all light at y that is scattered once more on the way.

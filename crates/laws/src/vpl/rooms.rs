@@ -96,7 +96,11 @@ where
         R: SamplingExtinction + Copy,
         T: RayTransmittance<M> + Copy,
     {
-        Ok(judge(&measure(run.seed, run.samples, self.replicas(replica))?, reference, run.alpha))
+        Ok(judge(
+            &measure(run.seed, run.samples, self.replicas(replica))?,
+            &reference.with_mild_tails(),
+            run.alpha,
+        ))
     }
 
     /// **Law.** The same against path tracing. One sample is a replica less the mean of `paths` paths, whose expectation is 0; the mean of a
@@ -122,6 +126,6 @@ where
             let paths_mean = (0..paths).map(|_| traced(source)).sum::<f64>() / f64::from(paths);
             scale + replicas(source) - paths_mean
         })?;
-        Ok(judge(&measured, &Reference::exact(scale), run.alpha))
+        Ok(judge(&measured, &Reference::exact(scale).with_mild_tails(), run.alpha))
     }
 }

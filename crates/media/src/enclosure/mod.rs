@@ -6,6 +6,7 @@
 
 mod certificate;
 mod certified;
+mod range;
 
 pub use certificate::{Certificate, Doubt};
 pub use certified::Certified;
@@ -75,7 +76,7 @@ pub trait Enclosed: Extinction {
     /// What σ_t falls below nowhere and what it exceeds nowhere between two distances: the hull over the stretch cut where its range is
     /// decided, until a cut changes little. Infinite where no bound is known.
     fn range_between(&self, from: f64, to: f64) -> (f64, f64) {
-        certificate::range_between(self, from, to)
+        range::between(self, from, to)
     }
 }
 
@@ -124,3 +125,6 @@ macro_rules! behind_a_pointer {
 }
 
 behind_a_pointer!(&M, Arc<M>);
+
+#[cfg(test)]
+mod tests;

@@ -56,7 +56,7 @@ impl LineEnclosed for Perlin {
             [0, 1, 2].map(|i| local.origin[i].abs() + to.abs() * local.direction[i].abs());
         let farthest = lengths.iter().copied().fold(0.0, f64::max);
         let highest = LARGEST_COORDINATE / self.reach;
-        if !(farthest * highest < LARGEST_COORDINATE) {
+        if !farthest.is_finite() || farthest * highest >= LARGEST_COORDINATE {
             // Far out, where the planes are no numbers any more, only the bounds of the whole are known.
             let whole = (self.lower_bound().unwrap_or(0.0), self.upper_bound().unwrap_or(f64::INFINITY));
             return Stretch::from_range(from, to, whole);
@@ -153,7 +153,8 @@ mod tests {
     /// Against the midpoint rule with a million nodes, whose error is some 1e-9 here.
     #[test]
     fn clipped_noise_is_certified() {
-        let shapes: [(fn(&mut PerlinParameters), f64); 4] = [
+        type Shape = (fn(&mut PerlinParameters), f64);
+        let shapes: [Shape; 4] = [
             (|p| p.octaves = 1, 20.0),
             (|p| (p.octaves, p.offset) = (3, 0.1), 20.0),
             (|p| (p.octaves, p.scale, p.offset) = (4, -2.0, 0.3), 10.0),

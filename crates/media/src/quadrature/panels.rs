@@ -9,7 +9,8 @@ pub struct Tolerance {
     pub absolute: f64,
     /// Allowed error relative to the integral.
     pub relative: f64,
-    /// Panels beyond which refinement gives up and reports the error that is left; 21 evaluations each.
+    /// Panels beyond which refinement gives up and reports the error that is left; 21 evaluations each. Going over all of them once per
+    /// round, it also gives up when it has gone over four times as many: a second or less, whatever is asked.
     pub most_panels: usize,
 }
 
@@ -195,12 +196,16 @@ impl<T> Panels<T> {
         tolerance: Tolerance,
         integrate: impl Fn(&[Panel<T>]) -> Vec<[PanelIntegral; K]>,
     ) -> Integral<K> {
+        let most_work = self.panels.len().max(tolerance.most_panels).saturating_mul(4);
+        let mut work = 0;
         for round in 0.. {
             let integrals = integrate(&self.panels);
+            work += self.panels.len();
             let (total, allowed) = add_up(&integrals, tolerance);
             if total.converged
                 || round == MOST_ROUNDS
                 || self.panels.len() >= tolerance.most_panels
+                || work >= most_work
                 || total.error.iter().any(|error| !error.is_finite())
             {
                 return total;

@@ -9,6 +9,7 @@ mod comb;
 mod deviation;
 mod jackknife;
 mod naive;
+mod power_series;
 mod roulette;
 mod running_cumulant;
 mod sample_count;
@@ -16,6 +17,7 @@ mod second_moment;
 mod second_order;
 mod symmetric_means;
 mod telescoping;
+mod telescoping_law;
 mod unbiased_ray_marching;
 
 pub use comb::{Comb, CombLookups, CombShape, NoTeeth, Prepared};

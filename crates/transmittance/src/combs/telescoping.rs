@@ -1,10 +1,9 @@
 //! Debiasing by a telescoping sum of nested combs (misso-2022; blanchet-2015).
 
 use super::{Comb, CombShape, NoTeeth, Prepared};
-use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
-use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
+use crate::TransmittanceEstimator;
+use fairflight_media::Extinction;
 use fairflight_sources::UniformSource;
-use std::cell::Cell;
 
 /// exp(−X) of a comb of k teeth, and the difference that a comb of 2^l k teeth makes, at a random level l.
 ///
@@ -26,7 +25,7 @@ use std::cell::Cell;
 /// level of 4, a bias (1e-5 on the seed ray), and draw the level from one variate, whose lattice ends the levels in
 /// its own way; here a variate decides on each level.
 ///
-/// **Variance.** All moments are sums over levels of integrals over u. Δ_l is quadratic in X_odd − X_even, the error
+/// **Variance.** (`telescoping_law.rs`) All moments are sums over levels of integrals over u. Δ_l is quadratic in X_odd − X_even, the error
 /// of a comb of step h ~ 2^{−l}, so that E\[Δ_l²\] ~ 2^{−bl} goes like its fourth power: b = 4 where σ_t jumps, or
 /// differs at its ends (then endpoint matching helps); 8 where only its slope does; 2 where it is noise finer than
 /// the teeth, whose error is that of h^{1/2}; faster than any power where it is smooth and matched at all orders. The
@@ -101,14 +100,14 @@ impl Telescoping {
     }
 
     /// p_l.
-    fn probability(&self, level: u32) -> f64 {
+    pub(super) fn probability(&self, level: u32) -> f64 {
         self.level_ratio * (1.0 - self.level_ratio).powi(level as i32)
     }
 
     /// The combs inside that of `level` with the variate u: the mean of `each`(X) over those of level 0, and the
     /// difference Δ_level times exp(`offset`).
     #[inline]
-    fn nested<F: Extinction>(
+    pub(super) fn nested<F: Extinction>(
         &self,
         field: &F,
         prepared: &Prepared,
@@ -164,210 +163,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
 
     fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
         true
-    }
-}
-
-/// Look-ups that the theory may spend on one level.
-const MOST_LOOKUPS: f64 = 3e6;
-
-/// A share of the variance that is negligible.
-const NEGLIGIBLE: f64 = 1e-13;
-
-/// What one level adds: E\[b\] and E\[Δ\], E\[Δ²\]/p² and E\[(b + Δ/p)^n\], n = 2 … 8, in units of the deviation at
-/// level 0, b the T_0 of that level less 1.
-struct Level {
-    base: f64,
-    difference: f64,
-    square: f64,
-    moments: [f64; HIGHEST_MOMENT - 1],
-}
-
-impl Telescoping {
-    /// The moments of a level in units of `unit` exp(`scale.log`); `None` where they cost too much.
-    fn moments_at<F: Breakpoints>(
-        &self,
-        field: &F,
-        prepared: &Prepared,
-        level: u32,
-        (scale, unit): (Scale, f64),
-        tolerance: Tolerance,
-    ) -> Option<Level> {
-        let teeth = self.comb.teeth().checked_mul(1_u32.checked_shl(level)?)?;
-        // Its teeth stand on a breakpoint at the same variates as those of the comb that it makes up.
-        let breaks = Comb::new(teeth, self.comb.shape()).ok()?.folded_breakpoints(field, prepared);
-        let most_panels = (MOST_LOOKUPS / 21.0 / f64::from(teeth)) as usize;
-        if breaks.len() >= most_panels {
-            return None;
-        }
-        let probability = self.probability(level);
-        let exactness = tolerance.relative.max(1e-12);
-        let tolerance =
-            Tolerance { absolute: exactness / probability.sqrt(), relative: exactness, most_panels };
-        let integral = adaptive_integral(1.0, &breaks, tolerance, |u| {
-            let (base, difference) =
-                self.nested(field, prepared, (level, u), scale.thickness - scale.log, |x| scale.deviation(x));
-            let (base, difference) = (base / unit, difference / unit);
-            let weighted = difference / probability;
-            let value = base + weighted;
-            let mut power = value;
-            let mut all = [base, difference, weighted * weighted, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-            for slot in &mut all[3..] {
-                power *= value;
-                *slot = power;
-            }
-            all
-        });
-        let [base, difference, square, moments @ ..] = integral.value;
-        Some(Level { base, difference, square, moments })
-    }
-}
-
-impl<F: Breakpoints> ClosedForm<F> for Telescoping {
-    /// All moments where the levels that matter can be summed. Where they cannot (a profile with kinks has some at
-    /// every level), the variance alone, its tail continued as a geometric series, whose sum is the error that is
-    /// stated; infinite where the levels add more and more.
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
-        let field = quadrature.field();
-        let prepared = self.comb.prepare(field, 0.0, field.length());
-        let lookups = self.expected_lookups();
-        let breaks = self.comb.folded_breakpoints(field, &prepared);
-        let noise = 8.0 * f64::EPSILON * (1.0 + optical_thickness.abs());
-        let rough = |scale: Scale| {
-            let absolute = if scale.log == 0.0 { noise * noise } else { 0.0 };
-            let coarse = Tolerance { absolute, relative: 1e-3, ..tolerance };
-            let greatest = Cell::new(f64::NEG_INFINITY);
-            let square = adaptive_integral(1.0, &breaks, coarse, |u| {
-                let x = self.comb.thickness(field, &prepared, u);
-                greatest.set(greatest.get().max(optical_thickness - x));
-                let relative = scale.deviation(x);
-                [relative * relative]
-            });
-            (square.value[0], greatest.get())
-        };
-        let mut scale = Scale { thickness: optical_thickness, log: 0.0 };
-        let (mut square, greatest) = rough(scale);
-        if greatest > MOST_EXPONENT {
-            scale.log = greatest;
-            square = f64::INFINITY;
-        }
-        // Finer nodes may find greater ones: beyond 354 more they overflow, and are the new unit.
-        for _ in 0..MOST_ROUNDS {
-            if square.is_finite() {
-                break;
-            }
-            let (found, greatest) = rough(scale);
-            square = found;
-            if !square.is_finite() {
-                scale.log = greatest;
-            }
-        }
-        let with = |moments, error| scale.theory(moments, error, lookups);
-        if square <= noise * noise && scale.log == 0.0 {
-            return with(([0.0; HIGHEST_MOMENT - 1], 0.0), 0.0);
-        }
-        let unit = square.sqrt();
-        // exp(τ − X) is off by the rounding of its exponent; in units of the greatest one that is what counts.
-        let exactness =
-            tolerance.relative.max(8.0 * noise / if scale.log == 0.0 { unit } else { unit.min(1.0) });
-        let tolerance = Tolerance { relative: exactness, ..tolerance };
-
-        let beyond = |level: u32| (1.0 - self.level_ratio).powi(level as i32 + 1);
-        let mut sums = [0.0; HIGHEST_MOMENT - 1];
-        let (mut base, mut remaining) = (0.0, 0.0);
-        let mut shares: Vec<f64> = Vec::new();
-        for level in 0.. {
-            let Some(found) = self.moments_at(field, &prepared, level, (scale, unit), tolerance) else {
-                break;
-            };
-            let probability = self.probability(level);
-            for (sum, moment) in sums.iter_mut().zip(found.moments) {
-                *sum += probability * moment;
-            }
-            base = found.base;
-            remaining = if level == 0 { base } else { remaining + found.difference };
-            shares.push(probability * found.square);
-            // Two levels in a row, since one may be small by chance; beyond, every level has the same T_0 and no
-            // difference.
-            if level >= 2 && shares[level as usize - 1..].iter().all(|share| *share <= NEGLIGIBLE * sums[0]) {
-                for (sum, moment) in sums.iter_mut().zip(found.moments) {
-                    *sum += beyond(level) * moment;
-                }
-                return with((sums, unit), exactness);
-            }
-        }
-        let mut unknown = [f64::NAN; HIGHEST_MOMENT - 1];
-        let Some([before, .., last]) = shares.len().checked_sub(5).map(|from| &shares[from..]) else {
-            return with((unknown, unit), f64::NAN);
-        };
-        // Over four levels: where a jump stands in the binary fractions of a step repeats after two or four, if at all.
-        let ratio = (last / before).powf(0.25);
-        if ratio >= 1.0 {
-            unknown[0] = f64::INFINITY;
-            return with((unknown, unit), f64::NAN);
-        }
-        // Σ over the levels that are left of p b² + 2 b E[Δ] + E[Δ²]/p.
-        let tail = last * ratio / (1.0 - ratio);
-        sums[0] += beyond(shares.len() as u32 - 1) * base * base - 2.0 * base * remaining + tail;
-        unknown[0] = sums[0];
-        with((unknown, unit), tail / sums[0])
-    }
-}
-
-/// Beyond exp of this, deviations are taken in units of the greatest: their eighth powers would overflow, and soon they themselves.
-const MOST_EXPONENT: f64 = 80.0;
-
-/// Rounds in which a greater deviation may be found: each halves the panels around it.
-const MOST_ROUNDS: u32 = 60;
-
-/// What deviations exp(τ − X) − 1 are divided by: exp(`log`), 1 but for dense media.
-#[derive(Clone, Copy)]
-struct Scale {
-    thickness: f64,
-    log: f64,
-}
-
-impl Scale {
-    /// (exp(τ − x) − 1) exp(−log).
-    fn deviation(self, x: f64) -> f64 {
-        if self.log == 0.0 {
-            (self.thickness - x).exp_m1()
-        } else {
-            (self.thickness - self.log - x).exp() - (-self.log).exp()
-        }
-    }
-
-    /// The law of an estimate with moments n = 2 … 8 in units of `unit` exp(log).
-    fn theory(
-        self,
-        (moments, unit): ([f64; HIGHEST_MOMENT - 1], f64),
-        relative_variance_error: f64,
-        lookups: f64,
-    ) -> Theory {
-        let relative_central: [f64; HIGHEST_MOMENT - 1] = std::array::from_fn(|i| {
-            let n = i as i32 + 2;
-            if self.log == 0.0 || moments[i] == 0.0 {
-                return if moments[i] == 0.0 { 0.0 } else { moments[i] * unit.powi(n) };
-            }
-            let log = moments[i].abs().ln() + f64::from(n) * (unit.ln() + self.log);
-            moments[i].signum() * log.exp()
-        });
-        let log_relative_variance = if self.log == 0.0 {
-            relative_central[0].ln()
-        } else {
-            moments[0].ln() + 2.0 * (unit.ln() + self.log)
-        };
-        Theory {
-            relative_mean: 1.0,
-            relative_central,
-            log_relative_variance,
-            relative_variance_error,
-            ..Theory::mean_only(lookups)
-        }
     }
 }
 

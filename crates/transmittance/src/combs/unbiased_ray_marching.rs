@@ -1,8 +1,9 @@
 //! Unbiased ray marching: kettunen-2021, with any comb, any stop probability and any number of segments.
 
 use super::deviation::DeviationLaw;
+use super::power_series::of_draws;
 use super::second_moment::relative_variance;
-use super::symmetric_means::{IN_PLACE, SymmetricMeans};
+use super::symmetric_means::IN_PLACE;
 use super::{Comb, Prepared, Roulette, RunningCumulant};
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
@@ -133,8 +134,7 @@ impl UnbiasedRayMarching {
         product.times_exp(-thickness)
     }
 
-    /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs: as s exp(t), t = 0 but where that is
-    /// beyond the range of numbers.
+    /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs: as s exp(t), see [`of_draws`].
     fn series<F: Extinction, S: UniformSource + ?Sized>(
         &self,
         field: &F,
@@ -151,58 +151,8 @@ impl UnbiasedRayMarching {
             deviations.push(first - self.comb.thickness(field, prepared, source.next_uniform()));
         }
         observe(&deviations);
-
-        // exp(X_0 − X_j) in units of the greatest, and differences in units of U, so that no product of them leaves the range.
-        let greatest = deviations.iter().copied().fold(0.0, f64::max);
-        let least = deviations.iter().copied().fold(0.0, f64::min);
-        let unit = differences_in(greatest - least, order);
-        let top = if greatest > MOST_EXPONENT { greatest } else { 0.0 };
-        let mut means = SymmetricMeans::new();
-        let mut sum = 0.0;
-        for (pivot, &own) in deviations.iter().enumerate() {
-            means.clear();
-            let (before, others) = deviations.split_at(pivot);
-            means.extend(before.iter().chain(&others[1..]).map(|&other| (other - own) / unit));
-            sum += (own - top).exp() * self.polynomial(&means.means()[1..], unit);
-        }
-        let exponent = if unit == 1.0 { top } else { top + f64::from(order) * (0.5 * unit).ln() };
-        (sum / f64::from(order + 1), exponent)
+        of_draws(self.roulette, &deviations)
     }
-
-    /// Σ_k w_k U^k m_k over (U/2)^N, of m_1 … m_N in units of U; 1 stands for no unit and no divisor.
-    #[inline]
-    fn polynomial(&self, means: &[f64], unit: f64) -> f64 {
-        // w_k = 2^{1−k}/P.
-        let mut weight = self.roulette.weight(1);
-        if unit == 1.0 {
-            let mut series = 1.0;
-            for &mean in means {
-                series += weight * mean;
-                weight *= 0.5;
-            }
-            return series;
-        }
-        // From the highest power down, (2/P) (U/2)^{k−N} and (U/2)^{−N} at last: what underflows is nothing beside the first.
-        let (half, mut series) = (0.5 * unit, 0.0);
-        weight *= 2.0;
-        let mut power = 1.0;
-        for &mean in means.iter().rev() {
-            series += weight * power * mean;
-            power /= half;
-        }
-        series + power
-    }
-}
-
-/// exp of this, times what the polynomials may be, is far from the range of numbers.
-const MOST_EXPONENT: f64 = 300.0;
-
-/// The power of two that differences up to `spread` are taken in: 1 unless their powers up to `order` pass 2^450.
-#[inline]
-fn differences_in(spread: f64, order: u32) -> f64 {
-    // 10000^33 < 2^450.
-    let few = spread < 1e4 && order <= 33;
-    if few || spread.log2() * f64::from(order) < 450.0 { 1.0 } else { spread.log2().ceil().exp2() }
 }
 
 /// Σ (x − x̅)²/N of N + 1 values.
@@ -423,26 +373,6 @@ mod tests {
             let found = estimator.estimate(&step, &mut source);
             assert_relative_eq!(found, exact, max_relative = 1e-10);
         }
-    }
-
-    #[test]
-    fn a_polynomial_is_the_same_in_any_unit() {
-        let estimator = UnbiasedRayMarching::new(comb(1, CombShape::Uniform), Roulette::KETTUNEN);
-        let means = [0.3, -1.2, 2.5, 0.7, -0.4, 1.0];
-        let plain = estimator.polynomial(&means, 1.0);
-        for unit in [0.5_f64, 4.0, 1024.0] {
-            let mut power = 1.0;
-            let scaled = means.map(|mean| {
-                power *= unit;
-                mean / power
-            });
-            let found = estimator.polynomial(&scaled, unit) * (0.5 * unit).powi(6);
-            assert_relative_eq!(found, plain, max_relative = 1e-13);
-        }
-        assert_eq!(
-            [differences_in(9e3, 33), differences_in(1e4, 40), differences_in(0.0, 1)],
-            [1.0, 16384.0, 1.0]
-        );
     }
 
     #[test]

@@ -4,9 +4,10 @@ use super::erased::{ByCells, ByLookups, ByMajorant, Erased};
 use super::exact::Exact;
 use super::learning::{PILOTS, TUNING, comb_variance, experience};
 use super::progressive::Progressive;
+use super::range::Bounds;
 use super::{Beyond, Facts, cells};
 use crate::Failure;
-use crate::plan::{AnyProfile, Field, FieldJob, KnownField};
+use crate::plan::AnyProfile;
 use crate::spec::{BeyondSpec, BoundsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec};
 use fairflight_media::{Bounded, BoundedInCells, Vacuum};
 use fairflight_transmittance::{
@@ -20,6 +21,8 @@ use std::sync::{Arc, Mutex};
 /// Where the closed form comes from, in words.
 const QUADRATURE: &str = "variance: closed form, integrated over the ray";
 const COMBS: &str = "variance: closed form in the moments of a comb, integrated over its offset";
+const VOLTERRA: &str = "variance: by an integral equation along the ray";
+const BOUNDED: &str = "variance: no closed form, but an upper bound";
 const UNKNOWN: &str = "variance: no closed form";
 
 /// A power series is drawn to orders about its pivot or rate, which are counted in 32 bits.
@@ -95,16 +98,38 @@ impl Facts {
     fn within(self, minimum: f64, maximum: f64) -> Self {
         Self { range: Some((minimum, maximum)), ..self }
     }
+
+    fn ranging(self, range: Option<(f64, f64)>) -> Self {
+        Self { range, ..self }
+    }
+}
+
+impl Ray<'_> {
+    fn bounds(self) -> Bounds {
+        match self {
+            Self::One(profile) => Bounds::of(profile),
+            Self::Any => Bounds::default(),
+        }
+    }
+
+    fn length(self) -> f64 {
+        match self {
+            Self::One(profile) => profile.length(),
+            Self::Any => f64::NAN,
+        }
+    }
 }
 
 fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> {
     let at = |what: &str| format!("{key}.{what}");
     Ok(match spec {
-        BeyondSpec::NextFlight { majorant, version } => next_flight(*majorant, *version, &at("majorant"))?,
+        BeyondSpec::NextFlight { majorant, version } => {
+            next_flight(*majorant, *version, ray, &at("majorant"))?
+        }
         BeyondSpec::PSeries { version, pivot } => {
             let (version, variance) = match version {
                 PSeriesKind::Cmf => (PSeriesVersion::Cmf, QUADRATURE),
-                PSeriesKind::Cumulative => (PSeriesVersion::Cumulative, UNKNOWN),
+                PSeriesKind::Cumulative => (PSeriesVersion::Cumulative, BOUNDED),
                 PSeriesKind::Ratio => (PSeriesVersion::Ratio, QUADRATURE),
                 PSeriesKind::NextFlight => (PSeriesVersion::NextFlight, QUADRATURE),
             };
@@ -115,7 +140,10 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
             };
             let pivot = countable(pivot, &at("pivot"))?;
             let estimator = PSeries::new(version, pivot).map_err(|error| refuse(&at("pivot"), &error))?;
-            Beyond::of(ByLookups(estimator), Facts::new("p_series", variance))
+            // Factors of t_c − S σ_t.
+            let facts = Facts::new("p_series", variance)
+                .ranging(ray.bounds().of_null_collisions(pivot / ray.length()));
+            Beyond::of(ByLookups(estimator), facts)
         }
         BeyondSpec::GeneralisedPoisson { pivot, rate } => {
             let rate = countable(*rate, &at("rate"))?;
@@ -129,7 +157,9 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
             let shape = if *endpoint_matching { CombShape::EndpointMatched } else { CombShape::Uniform };
             let estimator = Telescoping::new(*teeth, *level_ratio, shape)
                 .map_err(|error| refuse(&at("level_ratio"), &error))?;
-            Beyond::of(ByLookups(estimator), Facts::new("telescoping", COMBS))
+            let range = ray.bounds().of_telescoping(ray.length(), *teeth, *endpoint_matching);
+            let facts = Facts::new("telescoping", COMBS).ranging(range);
+            Beyond::of(ByLookups(estimator), facts)
         }
         BeyondSpec::JitteredRatio { bounds: BoundsSpec::Majorant(majorant), epsilon } => {
             checked(*majorant, &at("majorant"))?;
@@ -153,7 +183,8 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
         BeyondSpec::AdaptiveRatio { majorant, floor } => {
             checked(*majorant, &at("majorant"))?;
             let estimator = AdaptiveRatio::new(*floor).map_err(|error| refuse(&at("floor"), &error))?;
-            let facts = Facts::claiming("adaptive_ratio", *majorant, UNKNOWN);
+            let facts = Facts::claiming("adaptive_ratio", *majorant, VOLTERRA)
+                .ranging(ray.bounds().of_null_collisions(*majorant));
             Beyond::of(ByMajorant { estimator, majorant: *majorant }, facts)
         }
         BeyondSpec::Regular => match ray {
@@ -183,6 +214,7 @@ fn build(spec: &BeyondSpec, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> 
             let learner = ProgressiveMajorant::new(*start).map_err(|error| refuse(&at("start"), &error))?;
             let facts = Facts {
                 sequential: true,
+                range: ray.bounds().of_clamped_walk(),
                 ..Facts::new("progressive_majorant", "variance: no closed form (biased as long as it learns)")
             };
             Beyond::of(Progressive(Mutex::new(learner)), facts)
@@ -195,9 +227,10 @@ fn checked(majorant: f64, key: &str) -> Result<f64, Failure> {
     Bounded::new(Vacuum::new(0.0), majorant).map(|_| majorant).map_err(|error| refuse(key, &error))
 }
 
-fn next_flight(majorant: f64, version: NextFlightKind, key: &str) -> Result<Beyond, Failure> {
+fn next_flight(majorant: f64, version: NextFlightKind, ray: Ray<'_>, key: &str) -> Result<Beyond, Failure> {
     checked(majorant, key)?;
-    let facts = |variance| Facts::claiming("next_flight", majorant, variance);
+    let range = ray.bounds().of_null_collisions(majorant);
+    let facts = |variance| Facts::claiming("next_flight", majorant, variance).ranging(range);
     let known = |version| {
         let estimator = NextFlight::new(version);
         Beyond::of(ByMajorant { estimator, majorant }, facts(QUADRATURE))
@@ -358,15 +391,5 @@ fn depth(profile: &AnyProfile, needs: &str) -> Result<f64, Failure> {
 }
 
 fn declared(profile: &AnyProfile) -> Option<f64> {
-    struct UpperBound;
-    impl FieldJob for UpperBound {
-        type Output = Option<f64>;
-        fn run<F: KnownField>(self, field: &F) -> Option<f64>
-        where
-            for<'a> &'a F: Field,
-        {
-            field.knowledge().upper_bound
-        }
-    }
-    profile.with(UpperBound).map(|bound| bound.max(0.0))
+    Bounds::of(profile).most.map(|bound| bound.max(0.0))
 }

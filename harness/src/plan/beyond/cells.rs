@@ -28,17 +28,30 @@ fn found(count: usize, profile: &AnyProfile) -> Result<Vec<BoundCell>, Failure> 
         AnyProfile::Homogeneous(ray) => ray.equal_cells(count),
         AnyProfile::AnalyticCosine(ray) => ray.equal_cells(count),
         AnyProfile::Voxels(ray) => ray.equal_cells(count),
-        AnyProfile::Expression(_) | AnyProfile::ExpressionMedium(_) => {
-            return Err(unbounded("an expression"));
+        AnyProfile::Expression(field) => bounded(field.equal_cells(count), profile)?,
+        AnyProfile::ExpressionMedium(ray) => bounded(ray.equal_cells(count), profile)?,
+        AnyProfile::Perlin(_) => {
+            return Err(without_bounds("Perlin noise does not know its bounds in cells"));
         }
-        AnyProfile::Perlin(_) => return Err(unbounded("Perlin noise")),
     })
 }
 
-fn unbounded(what: &str) -> Failure {
+/// Cells of a formula, unless the arithmetic of intervals finds no bound in one of them.
+fn bounded(cells: Vec<BoundCell>, profile: &AnyProfile) -> Result<Vec<BoundCell>, Failure> {
+    let mut from = 0.0;
+    for cell in &cells {
+        if !(cell.minorant.is_finite() && cell.majorant.is_finite()) {
+            let (start, end) = (profile.place(from), profile.place(cell.to));
+            return Err(without_bounds(&format!("no bounds of sigma_t are found between {start} and {end}")));
+        }
+        from = cell.to;
+    }
+    Ok(cells)
+}
+
+fn without_bounds(reason: &str) -> Failure {
     Failure::refused(format!(
-        "estimator.cells: {what} does not know its bounds in cells; give edges, minorants and majorants, or use jittered_ratio \
-         with a majorant"
+        "estimator.cells: {reason}; give edges, minorants and majorants, or use jittered_ratio with a majorant"
     ))
 }
 

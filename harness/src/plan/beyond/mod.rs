@@ -6,6 +6,7 @@ mod erased;
 mod exact;
 mod learning;
 mod progressive;
+mod range;
 
 pub use learning::pilot;
 pub(super) use learning::{PILOTS, TUNING};

@@ -4,6 +4,7 @@ use super::{Check, LAWFUL, radiance, result};
 use crate::catalogue::Law;
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{check, judge_estimates, slab};
+use crate::scores::NEVER_NEGATIVE;
 use crate::{CheckResult, Kind, Run};
 use fairflight_collision::Version;
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh};
@@ -37,19 +38,25 @@ impl View {
         slab::line(self.lit, self.reflected, self.optical_thickness)
     }
 
+    /// What a walk at a rate of at least `lowest` can score in the extinction 1 of a slab. From 1 on no energy is negative, and none
+    /// exceeds that of before but by a gain: a walk that is lit or not, by a radiance of 1, scores between 0 and 1, and one of
+    /// energy 1 has two values.
+    fn scores(&self, version: Version, lowest: f64) -> Scores {
+        let is_lit_or_not = self.lit == Lit::Diffusely && self.albedo <= 1.0;
+        match version {
+            _ if lowest < 1.0 => Scores::Unbounded,
+            Version::Terminating if is_lit_or_not => Scores::TwoValued { high: 1.0 },
+            _ if is_lit_or_not => Scores::Bounded { minimum: 0.0, maximum: 1.0 },
+            _ => NEVER_NEGATIVE,
+        }
+    }
+
     /// The doubling method's answer, with its error and the bound of what the sides of the box change.
-    ///
-    /// A walk of energy 1 that is lit or not has two values.
-    fn reference<P: PhaseFunction>(&self, phase: &P, legendre: &[f64], is_coin: bool) -> Reference {
+    fn reference<P: PhaseFunction>(&self, phase: &P, legendre: &[f64], scores: Scores) -> Reference {
         let Self { optical_thickness, albedo, lit, reflected } = *self;
         let response = Slab { optical_thickness, albedo, legendre: legendre.to_vec() }.respond(lit);
         let mean = if reflected { response.reflected } else { response.transmitted };
         let error = response.error + slab::sideways(optical_thickness, albedo, phase);
-        let scores = if is_coin && lit == Lit::Diffusely {
-            Scores::TwoValued { high: 1.0 }
-        } else {
-            Scores::Unbounded
-        };
         Reference { error, scores, ..Reference::exact(mean) }
     }
 
@@ -131,12 +138,12 @@ where
     let (version, rate) = (walk.version(), walk.sampling().highest());
     let id = format!("slab/{} {phase_name}, {version:?} at {rate:.2}", view.name());
     let legendre = legendre.to_vec();
-    let is_coin = version == Version::Terminating && walk.sampling().lowest() >= 1.0;
+    let scores = view.scores(version, walk.sampling().lowest());
     radiance(id, format!("importons, {version:?}"), "slab", samples, move |run| {
         let volume = slab::volume(view.optical_thickness, view.albedo, phase).expect(LAWFUL);
         let lights = slab::lights(view.lit).expect(LAWFUL);
         let mut tracer = ParticleTracer::new(&volume, &lights, walk.clone());
-        check(&mut tracer, &[view.line()], &view.reference(&phase, &legendre, is_coin), run)
+        check(&mut tracer, &[view.line()], &view.reference(&phase, &legendre, scores), run)
     })
 }
 
@@ -157,7 +164,7 @@ fn splitting(name: &str, view: View, starts: Starts) -> Check {
         let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).expect(LAWFUL));
         let line = LineIntegral::new(4).expect(LAWFUL);
         let mut tracer = LineSplitting::new(&volume, &lights, walk, (line, starts, 1.5));
-        check(&mut tracer, &[view.line()], &view.reference(&Isotropic, &[1.0], false), run)
+        check(&mut tracer, &[view.line()], &view.reference(&Isotropic, &[1.0], NEVER_NEGATIVE), run)
     })
     .about([Kind::LineIntegral])
 }
@@ -176,7 +183,8 @@ fn coloured(lit: Lit) -> Check {
             let mut tracer = ParticleTracer::new(&volume, &lights, walk);
             let (view, line) = (view(ALBEDO[channel]), view(1.0).line());
             let estimate = |source: &mut Seeded| -> f64 { tracer.radiance(&line, source)[channel] };
-            let verdict = judge_estimates(estimate, &view.reference(&Isotropic, &[1.0], false), share);
+            let verdict =
+                judge_estimates(estimate, &view.reference(&Isotropic, &[1.0], NEVER_NEGATIVE), share);
             (name, result(&verdict, run))
         });
         CheckResult::of_all(channels)

@@ -1,6 +1,7 @@
 //! The whole recursion over random sets: furnaces, and a room of smoke against path tracing.
 
 use super::{Check, LAWFUL, Law, STRATEGIES, result};
+use crate::scores::NEVER_NEGATIVE;
 use crate::vpl::rooms::{Replica, Room};
 use crate::vpl::scenes::{GLOW, clear, cloud, round, shiny, smoky};
 use fairflight_collision::Version;
@@ -74,7 +75,9 @@ where
     let id = format!("vpl/furnace/{name}");
     Check::new(id, Law::Compensation, "bounded lights and compensation", "furnace", size.3, move |run| {
         let replica = replica(options, size, 2.0, Regular);
-        result(&room().check(replica, &Reference::exact(radiance), run), run)
+        // Rates above every extinction: no weight is negative.
+        let reference = Reference { scores: NEVER_NEGATIVE, ..Reference::exact(radiance) };
+        result(&room().check(replica, &reference, run), run)
     })
 }
 

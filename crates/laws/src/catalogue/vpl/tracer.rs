@@ -14,7 +14,7 @@ use fairflight_paths::transport::World;
 use fairflight_paths::{Heuristic, Integrator, PathTracer, Ratio, Uniform, Walk};
 use fairflight_scene::{Geometry, Surfaces, Volume};
 use fairflight_sources::{Seeded, derive_seed};
-use fairflight_stats::Reference;
+use fairflight_stats::{ClosedMoments, Reference};
 use fairflight_transmittance::Regular;
 use glam::{DVec3, dvec3};
 
@@ -73,7 +73,10 @@ where
         let walk = Walk::new(Version::NonTerminating, sampling);
         let mut tracer = PathTracer::new(world, walk, Ratio(sampling), Heuristic::Balance);
         let past = Line { origin: dvec3(0.3, 0.1, -2.0), direction: dvec3(-0.05, -0.1, 1.0).normalize() };
-        result(&check(&mut tracer, &[eye, past], &Reference::exact(1.0), run), run)
+        let exactly =
+            (samples == WITHOUT_VARIANCE).then(|| ClosedMoments::from_central(1.0, &[Some(0.0); 7]));
+        let reference = Reference { moments: exactly, ..Reference::exact(1.0) };
+        result(&check(&mut tracer, &[eye, past], &reference, run), run)
     })
 }
 
