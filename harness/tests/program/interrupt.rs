@@ -5,12 +5,48 @@ use fairflight_harness::image::Image;
 use serde_json::{Value, json};
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// Far longer than the first steps of a report and the removal of a folder take on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A program that does not outlive its test.
+struct Running(Option<Child>);
+
+impl Running {
+    fn start(command: &mut Command) -> Self {
+        Self(Some(command.spawn().expect("the program starts")))
+    }
+
+    fn output(mut self) -> Output {
+        self.0.take().expect("it runs").wait_with_output().expect("an end")
+    }
+}
+
+impl Deref for Running {
+    type Target = Child;
+    fn deref(&self) -> &Child {
+        self.0.as_ref().expect("it runs")
+    }
+}
+
+impl DerefMut for Running {
+    fn deref_mut(&mut self) -> &mut Child {
+        self.0.as_mut().expect("it runs")
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.0 {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
 
 fn wait_for(what: &str, mut done: impl FnMut() -> bool) {
     let start = Instant::now();
@@ -25,40 +61,58 @@ fn entries(folder: &Path) -> usize {
 }
 
 /// Starts a report of a minute, and interrupts it as soon as its temporary folder is there.
-fn interrupted(signal: &str, out: &Path) -> Child {
-    let child = Command::new(env!("CARGO_BIN_EXE_harness"))
-        .args(["report", "--threads", "1", "--out"])
-        .arg(out)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+fn interrupted(signal: &'static str, out: &Path) -> Running {
+    let child = Running::start(
+        Command::new(env!("CARGO_BIN_EXE_harness"))
+            .args(["report", "--threads", "1", "--out"])
+            .arg(out)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped()),
+    );
     let parent = out.parent().expect("a parent").to_owned();
     wait_for("the temporary folder", || entries(&parent) > 0);
     send(signal, &child);
     child
 }
 
-fn send(signal: &str, child: &Child) {
+/// A signal that the program serves: the one given, or another where whoever started the tests ignores it (a shell in the
+/// background, say), since what is ignored at the start stays ignored.
+fn served(signal: &'static str) -> &'static str {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
+    let ignored = mask.map_or(0, |mask| u64::from_str_radix(mask, 16).expect("a mask"));
+    let number = |name| match name {
+        "-HUP" => 1,
+        "-INT" => 2,
+        "-QUIT" => 3,
+        _ => 15,
+    };
+    let is_served = |name: &&str| ignored >> (number(*name) - 1) & 1 == 0;
+    [signal, "-TERM", "-HUP", "-INT", "-QUIT"].into_iter().find(is_served).expect("one that is not ignored")
+}
+
+/// Sends a signal that is served.
+fn send(signal: &'static str, child: &Child) {
+    let signal = served(signal);
     let status = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
     assert!(status.success());
 }
 
 /// Starts an image that never ends, in passes.
-fn endless(resolution: [u32; 2], folder: &Path) -> Child {
+fn endless(resolution: [u32; 2], folder: &Path) -> Running {
     let mut scene = scene();
     scene["camera"]["resolution"] = json!(resolution);
     scene["samples_per_pixel"] = json!(4_000_000_000_u32);
-    let mut child = Command::new(env!("CARGO_BIN_EXE_harness"))
-        .args(["render", "-", "--threads", "1", "--time-limit", "1000", "--out"])
-        .arg(folder.join("image.pfm"))
-        .arg("--out")
-        .arg(folder.join("statistics.json"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut child = Running::start(
+        Command::new(env!("CARGO_BIN_EXE_harness"))
+            .args(["render", "-", "--threads", "1", "--time-limit", "1000", "--out"])
+            .arg(folder.join("image.pfm"))
+            .arg("--out")
+            .arg(folder.join("statistics.json"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped()),
+    );
     let mut stdin = child.stdin.take().expect("a pipe");
     stdin.write_all(scene.to_string().as_bytes()).expect("it reads");
     child
@@ -93,7 +147,7 @@ fn an_image_in_passes_can_be_watched_and_interrupted() {
 
     send("-INT", &child);
     wait_for("the end", || child.try_wait().expect("a state").is_some());
-    let output = child.wait_with_output().expect("an end");
+    let output = child.output();
     assert_eq!(output.status.code(), Some(130), "{output:?}");
     let finished = statistics(folder);
     let drawn = finished["image"]["samples_per_pixel"].as_u64().expect("a number");
@@ -131,7 +185,7 @@ fn an_interrupted_report_leaves_nothing_and_says_so() {
     for signal in ["-INT", "-TERM"] {
         let mut child = interrupted(signal, &root.path().join("new/parents/report"));
         wait_for("the end", || child.try_wait().expect("a state").is_some());
-        let output = child.wait_with_output().expect("an end");
+        let output = child.output();
         assert_eq!(output.status.code(), Some(130), "{signal}: {output:?}");
         assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted\n", "{signal}");
         assert!(output.stdout.is_empty());
@@ -169,19 +223,19 @@ fn whatever_runs_ends_without_a_result_and_says_so() {
         (&["render", "-", "--out", &picture], endless.to_string(), "-TERM"),
         (&["render", "-", "--out", &picture], photons.to_string(), "-QUIT"),
     ] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_harness"))
-            .args(arguments)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
+        let mut child = Running::start(
+            Command::new(env!("CARGO_BIN_EXE_harness"))
+                .args(arguments)
+                .stdin(Stdio::piped())
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped()),
+        );
         child.stdin.take().expect("a pipe").write_all(input.as_bytes()).expect("it reads");
         wait_until_served(child.id());
         std::thread::sleep(Duration::from_millis(200));
         send(signal, &child);
         wait_for("the end", || child.try_wait().expect("a state").is_some());
-        let output = child.wait_with_output().expect("an end");
+        let output = child.output();
         assert_eq!(output.status.code(), Some(130), "{arguments:?}: {output:?}");
         assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted\n", "{arguments:?}");
         assert!(output.stdout.is_empty() && entries(root.path()) == 0, "{arguments:?}");
@@ -193,13 +247,13 @@ fn whatever_runs_ends_without_a_result_and_says_so() {
 fn more_than_an_hour_is_said_before_it_begins() {
     let experiment = r#"{ "profile": { "kind": "constant", "sigma_t": 1, "length": 1 },
         "estimator": { "kind": "ray_marching", "steps": 100000, "jitter": true }, "samples": 10000000000, "seed": 1 }"#;
-    let mut child = Command::new(env!("CARGO_BIN_EXE_harness"))
-        .args(["estimate", "-", "--budget", "1e16", "--threads", "1"])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut child = Running::start(
+        Command::new(env!("CARGO_BIN_EXE_harness"))
+            .args(["estimate", "-", "--budget", "1e16", "--threads", "1"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped()),
+    );
     child.stdin.take().expect("a pipe").write_all(experiment.as_bytes()).expect("it reads");
     let mut stderr = BufReader::new(child.stderr.take().expect("a pipe"));
     let mut line = String::new();
@@ -215,7 +269,7 @@ fn more_than_an_hour_is_said_before_it_begins() {
 #[cfg(target_os = "linux")]
 #[test]
 fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
-    for (shell, ignored, served) in [
+    for (shell, ignored, last) in [
         (r#"nohup "$0" "$@" <"$SCENE" & echo $!; wait $!"#, &["-HUP", "-INT", "-QUIT"][..], "-TERM"),
         (r#""$0" "$@" <"$SCENE" & echo $!; wait $!"#, &["-INT", "-QUIT"], "-HUP"),
         (r#"trap '' TERM; exec "$0" "$@" <"$SCENE""#, &["-TERM"], "-INT"),
@@ -227,16 +281,16 @@ fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
         endless["camera"]["resolution"] = json!([512, 512]);
         endless["samples_per_pixel"] = json!(4_000);
         fs::write(&spec, endless.to_string()).expect("a file");
-        let mut child = Command::new("sh")
-            .args(["-c", shell, env!("CARGO_BIN_EXE_harness"), "render", "-", "--threads", "1", "--out"])
-            .arg(root.path().join("image.png"))
-            .arg("--out")
-            .arg(root.path().join("image.json"))
-            .env("SCENE", &spec)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("a shell");
+        let mut child = Running::start(
+            Command::new("sh")
+                .args(["-c", shell, env!("CARGO_BIN_EXE_harness"), "render", "-", "--threads", "1", "--out"])
+                .arg(root.path().join("image.png"))
+                .arg("--out")
+                .arg(root.path().join("image.json"))
+                .env("SCENE", &spec)
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped()),
+        );
         let mut stdout = BufReader::new(child.stdout.take().expect("a pipe"));
         let process = if shell.starts_with("trap") {
             child.id()
@@ -254,7 +308,7 @@ fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
         // Longer than a request would be waited for.
         std::thread::sleep(fairflight_harness::interrupt::GRACE + Duration::from_millis(500));
         assert_eq!(entries(root.path()), 2, "{shell}: still at work");
-        signal(served);
+        signal(served(last));
         wait_for("the end", || child.try_wait().expect("a state").is_some());
         assert_eq!(child.wait().expect("an end").code(), Some(130), "{shell}");
         assert_eq!(entries(root.path()), 0, "{shell}");
