@@ -33,7 +33,7 @@ pub(crate) fn run(
     bar.finish_and_clear();
     let provenance = environment.provenance(arguments.seed);
     let text = if arguments.json {
-        json(&checks, &results, provenance)?
+        json(&checks, &results, &provenance)?
     } else {
         table(&checks, &results, &provenance)
     };
@@ -137,7 +137,7 @@ struct Finding<'a> {
     reason: &'a str,
 }
 
-fn json(checks: &[Check], results: &[CheckResult], provenance: Provenance) -> Result<String, Failure> {
+fn json(checks: &[Check], results: &[CheckResult], provenance: &Provenance) -> Result<String, Failure> {
     let finding = |(check, result): (&'_ Check, &'_ CheckResult)| {
         let p_values = result.p_values.iter();
         serde_json::to_value(Finding {

@@ -111,8 +111,11 @@ mod tests {
     use crate::test_support::uniforms;
     use crate::{ClosedMoments, Moments, Reference, Scores};
 
+    /// A sample of a law from a uniform variate.
+    type Inverse = fn(f64) -> f64;
+
     /// A skewed law with a closed form, a bounded one without moments, and a coin.
-    fn laws() -> [(Reference, fn(f64) -> f64); 3] {
+    fn laws() -> [(Reference, Inverse); 3] {
         let raw = [1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0, 40320.0];
         let exponential = Reference { moments: Some(ClosedMoments::from_raw(&raw)), ..Reference::exact(1.0) };
         let bounded = Scores::Bounded { minimum: 0.0, maximum: 1.0 };

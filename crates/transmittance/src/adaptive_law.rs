@@ -184,10 +184,11 @@ fn collocated(own: &[Node], later: &[Node], rest: impl Fn(usize, usize) -> f64) 
 /// Solves by elimination: the matrices are near the identity.
 fn eliminate(mut matrix: [[f64; ORDER]; ORDER], mut side: [f64; ORDER]) -> [f64; ORDER] {
     for k in 0..ORDER {
+        let pivot = matrix[k];
         for i in (0..ORDER).filter(|&i| i != k) {
-            let factor = matrix[i][k] / matrix[k][k];
-            for j in k..ORDER {
-                matrix[i][j] -= factor * matrix[k][j];
+            let factor = matrix[i][k] / pivot[k];
+            for (value, of_pivot) in matrix[i].iter_mut().zip(pivot).skip(k) {
+                *value -= factor * of_pivot;
             }
             side[i] -= factor * side[k];
         }

@@ -220,7 +220,7 @@ fn the_variance_of_the_cumulative_version_is_below_its_bound_and_not_far() {
     check(seed_ray(), &[3.0, 6.0], 32);
     // A perfect pivot: nothing varies.
     let constant = Constant::new(0.7, 3.0).unwrap();
-    let theory = theory_of(&constant, &PSeries::new(Cumulative, 0.7 * 3.0).unwrap());
+    let theory = theory_of(constant, &PSeries::new(Cumulative, 0.7 * 3.0).unwrap());
     assert!(theory.relative_variance_bound < 1e-12);
     // A spike of which 10^4 points see less than one: no bound that would help.
     let spike = PiecewiseConstant::new(vec![0.0, 1.0, 1.000_01, 2.0], vec![0.1, 4e4, 0.1]).unwrap();

@@ -81,14 +81,10 @@ fn served(signal: &'static str) -> &'static str {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
     let ignored = mask.map_or(0, |mask| u64::from_str_radix(mask, 16).expect("a mask"));
-    let number = |name| match name {
-        "-HUP" => 1,
-        "-INT" => 2,
-        "-QUIT" => 3,
-        _ => 15,
-    };
-    let is_served = |name: &&str| ignored >> (number(*name) - 1) & 1 == 0;
-    [signal, "-TERM", "-HUP", "-INT", "-QUIT"].into_iter().find(is_served).expect("one that is not ignored")
+    let all = [("-HUP", 1), ("-TERM", 15), ("-INT", 2), ("-QUIT", 3)];
+    let is_served = |(_, number): &(&str, u32)| ignored >> (number - 1) & 1 == 0;
+    let asked = all.into_iter().filter(|(name, _)| *name == signal);
+    asked.chain(all).find(is_served).expect("one that is not ignored").0
 }
 
 /// Sends a signal that is served.
