@@ -158,10 +158,10 @@ impl Draw {
         let draw = |draw: &mut Self| mean * draw.scale(1.0 / spread, spread.sqrt());
         if self.happens(0.5) {
             let values: Vec<f64> = nodes.iter().skip(1).map(|_| draw(self)).collect();
-            piecewise_constant(family, nodes, values)
+            piecewise_constant(family, &nodes, &values)
         } else {
             let values: Vec<f64> = nodes.iter().map(|_| draw(self)).collect();
-            piecewise_linear(family, nodes, values)
+            piecewise_linear(family, &nodes, &values)
         }
     }
 
@@ -187,9 +187,9 @@ impl Draw {
         nodes.push(length);
         if linear {
             values.push(ground);
-            piecewise_linear("spiky", nodes, values)
+            piecewise_linear("spiky", &nodes, &values)
         } else {
-            piecewise_constant("spiky", nodes, values)
+            piecewise_constant("spiky", &nodes, &values)
         }
     }
 
@@ -224,8 +224,8 @@ impl Draw {
         let length = self.scale(0.5, 5.0);
         let count = 2 + self.below(4);
         let nodes = self.nodes(length, count);
-        let values = nodes.iter().skip(1).map(|_| self.between(-0.5, 1.5) / length).collect();
-        piecewise_constant("negative", nodes, values)
+        let values: Vec<f64> = nodes.iter().skip(1).map(|_| self.between(-0.5, 1.5) / length).collect();
+        piecewise_constant("negative", &nodes, &values)
     }
 
     /// An estimator that is lawful there, and about how many look-ups an estimate takes.
@@ -381,12 +381,12 @@ fn profile(kind: &str, family: &'static str, nodes: &[f64], values: &[f64], thic
     }
 }
 
-fn piecewise_constant(family: &'static str, nodes: Vec<f64>, values: Vec<f64>) -> Profile {
-    let thickness = integral(&nodes, |i| values[i]);
-    profile("piecewise_constant", family, &nodes, &values, thickness)
+fn piecewise_constant(family: &'static str, nodes: &[f64], values: &[f64]) -> Profile {
+    let thickness = integral(nodes, |i| values[i]);
+    profile("piecewise_constant", family, nodes, values, thickness)
 }
 
-fn piecewise_linear(family: &'static str, nodes: Vec<f64>, values: Vec<f64>) -> Profile {
-    let thickness = integral(&nodes, |i| 0.5 * (values[i] + values[i + 1]));
-    profile("piecewise_linear", family, &nodes, &values, thickness)
+fn piecewise_linear(family: &'static str, nodes: &[f64], values: &[f64]) -> Profile {
+    let thickness = integral(nodes, |i| 0.5 * (values[i] + values[i + 1]));
+    profile("piecewise_linear", family, nodes, values, thickness)
 }

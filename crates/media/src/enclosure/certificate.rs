@@ -291,6 +291,9 @@ fn thinned(borders: Vec<f64>, is_doubtful: bool) -> Vec<f64> {
     borders.into_iter().step_by(step).collect()
 }
 
+/// Operations that a stretch costs at least: it is cut, sorted and kept, even where its bounds are a constant.
+const LEAST_COST: u64 = 16;
+
 /// Errors and costs so far.
 struct Sums {
     integral: f64,
@@ -319,7 +322,7 @@ impl Sums {
     }
 
     fn add(&mut self, open: &Open) {
-        self.cost += open.stretch.cost;
+        self.cost += open.stretch.cost.max(LEAST_COST);
         if open.gain().is_finite() {
             self.gain += open.gain();
             self.integral += open.stretch.integral;
