@@ -17,7 +17,7 @@ use smallvec::SmallVec;
 /// T̂ = 1/(N+1) Σ_j exp(−X_j) Σ_{k≤N} m_k({X_j − X_i}_{i≠j}) / (k! P(N ≥ k))           (kettunen-2021)
 /// ```
 ///
-/// m_k the elementary symmetric means ([`SymmetricMeans`]). With a uniform comb and [`Roulette::KETTUNEN`] it is the
+/// m_k the elementary symmetric means ([`crate::SymmetricMeans`]). With a uniform comb and [`Roulette::KETTUNEN`] it is the
 /// estimator of the paper.
 ///
 /// **Law.** Unbiased on every profile. *Proof.* N is independent of all X, and X_j of the other X, so that E\[m_k |
