@@ -49,7 +49,7 @@ fn fairflight_dependencies(manifest: &Path) -> Vec<String> {
         .collect()
 }
 
-/// design.md, "Dependency direction": what a crate names directly; what that reaches is allowed too.
+/// Dependency direction (docs/ARCHITECTURE.md): what a crate names directly; what that reaches is allowed too.
 const ARROWS: [(&str, &[&str]); 13] = [
     ("sources", &[]),
     ("stats", &[]),
