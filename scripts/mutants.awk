@@ -116,7 +116,7 @@ END {
     }
     printf "| **all** | %d | %d | %d | %d | | | | | %d | %s |\n", drawn, all_run, all_unbuildable, all_equivalent, all_viable - all_caught, share_of_all(all_caught + 0, drawn - all_unbuildable - all_equivalent, all_run + 0, drawn)
     print ""
-    if (all_run < drawn) printf "%d of the sample have not been run yet: `scripts/mutants sample` goes on.\n\n", drawn - all_run
+    if (all_run < drawn) printf "%d of the sample have not been run yet: `scripts/mutants sample` goes on. A survivor for which a test was written has no result until it has met that test: shares of unfinished parts, also of the scale faults, are too high.\n\n", drawn - all_run
     if (missed != "") print "Missed:\n\n" missed
     if (reasons != "") print "Equivalent:\n\n" reasons
 }
