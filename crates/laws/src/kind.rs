@@ -42,7 +42,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// Every kind of estimator.
     pub const ALL: [Self; 18] = [
         Self::Woodcock,
         Self::DoubleParticle,

@@ -26,7 +26,7 @@ const LEVELS: u64 = 250_000;
 /// Combs that resolve their profile have next to no variance.
 const RESOLVED: u64 = 60_000;
 
-/// All of them.
+/// Checks of combs, for the catalogue.
 pub(super) fn combs() -> Vec<Check> {
     let mut checks = Vec::new();
 

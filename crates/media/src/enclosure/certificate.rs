@@ -43,9 +43,9 @@ pub enum Doubt {
     Budget {
         /// Operations that were allowed.
         budget: u64,
-        /// What ∫ σ_t is not below.
+        /// Lower bound of ∫ σ_t \[1\].
         low: f64,
-        /// What ∫ σ_t is not above.
+        /// Upper bound of ∫ σ_t \[1\].
         high: f64,
     },
     /// No bound of σ_t was found around some point.

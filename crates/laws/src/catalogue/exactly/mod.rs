@@ -12,7 +12,7 @@ use crate::CheckResult;
 /// The inputs of these checks are lawful: a constructor that refuses one is a bug here.
 const LAWFUL: &str = "the catalogue's exact inputs are lawful";
 
-/// All of them.
+/// Checks without chance, for the catalogue.
 pub(super) fn without_chance() -> Vec<Check> {
     let mut checks = decisions::checks();
     checks.extend(densities::checks());
