@@ -8,7 +8,7 @@ use sums::Sum;
 
 fn main() {
     let count: u64 = std::env::args().nth(1).map_or(10_000, |count| count.parse().expect("a number"));
-    let (mut certified, mut wrong, mut worst, mut borders) = (0, 0, 0.0_f64, 0);
+    let (mut certified, mut wrong, mut worst, mut borders) = (0, 0, (0.0, 0), 0);
     let mut costs = Vec::new();
     for seed in 0..count {
         let sum = Sum::random(seed);
@@ -18,8 +18,11 @@ fn main() {
         match found.doubt() {
             None => {
                 certified += 1;
-                worst = worst.max(off / (found.error + sum.rounding));
-                wrong += u64::from(off > found.error + sum.rounding);
+                let share = off / (found.error + sum.rounding);
+                if share > worst.0 {
+                    worst = (share, seed);
+                }
+                wrong += u64::from(share > 1.0);
             }
             Some(doubt) => {
                 println!("seed {seed}: {doubt}: {}", sum.formula);
@@ -31,7 +34,7 @@ fn main() {
     }
     costs.sort_unstable();
     let quantile = |q: f64| costs[((costs.len() - 1) as f64 * q) as usize];
-    println!("{certified} of {count} certified, {wrong} wrong; the worst off by {worst:.3} of its error");
+    println!("{certified} of {count} certified, {wrong} wrong; the worst, seed {}, off by {:.3} of its error", worst.1, worst.0);
     println!(
         "operations: median {}, 99 % {}, most {}; borders: {:.1} in the mean",
         quantile(0.5),

@@ -80,7 +80,7 @@ $1 == "mutant" {
 END {
     print "# Mutation score"
     print ""
-    print "Written by `scripts/mutants table` from [tests/mutants](../tests/mutants): do not edit. A mutant is one small fault in one formula; the tests"
+    print "Written by `tests/mutants/run table` from [tests/mutants](../tests/mutants): do not edit. A mutant is one small fault in one formula; the tests"
     print "must notice. Each meets the tests of its own crate (unit tests and `tests/` of the crate), what survives the checks without chance of"
     print "`fairflight-laws` (`exact/…` and `collision/…` of `verify`), what survives these `tests/`. The stage that notices it counts once."
     print "Intervals are those of Clopper and Pearson at 95 %."
@@ -102,7 +102,7 @@ END {
     if (open_faults != "") print "Not noticed:\n\n" open_faults
     print "## A sample of cargo-mutants' mutants"
     print ""
-    print "Drawn by `scripts/mutants draw`: the mutants whose names come first in an order by a salted hash, for each crate in proportion to how many it"
+    print "Drawn by `tests/mutants/run draw`: the mutants whose names come first in an order by a salted hash, for each crate in proportion to how many it"
     print "has and no fewer than 25. Of media: phase functions, quadrature and profiles. Implementations of `Display` and `Debug` and the files"
     print "`error.rs` are left out: they are words (decided before the first run). A mutant that does not compile is not viable; one whose tests"
     print "need ten times their CPU time is noticed, as endless. Equivalent mutants are not counted, and listed with the reason."
@@ -116,7 +116,7 @@ END {
     }
     printf "| **all** | %d | %d | %d | %d | | | | | %d | %s |\n", drawn, all_run, all_unbuildable, all_equivalent, all_viable - all_caught, share_of_all(all_caught + 0, drawn - all_unbuildable - all_equivalent, all_run + 0, drawn)
     print ""
-    if (all_run < drawn) printf "%d of the sample have not been run yet: `scripts/mutants sample` goes on. A survivor for which a test was written has no result until it has met that test: shares of unfinished parts, also of the scale faults, are too high.\n\n", drawn - all_run
+    if (all_run < drawn) printf "%d of the sample have not been run yet: `tests/mutants/run sample` goes on. A survivor for which a test was written has no result until it has met that test: shares of unfinished parts, also of the scale faults, are too high.\n\n", drawn - all_run
     if (missed != "") print "Missed:\n\n" missed
     if (reasons != "") print "Equivalent:\n\n" reasons
 }
