@@ -35,7 +35,7 @@ pub struct PValue {
     pub of: String,
     /// The p-value.
     pub p: f64,
-    /// How it is to be read.
+    /// Which law this p-value has while the hypothesis holds.
     pub level: Level,
 }
 

@@ -44,7 +44,7 @@ const MOST: f64 = 0.95;
 pub(crate) struct Inequality {
     /// Upper bound of the two-sided p-value.
     pub(crate) p: f64,
-    /// What it rests on, in words.
+    /// Names the inequality in reasons of a verdict.
     pub(crate) name: &'static str,
 }
 

@@ -19,7 +19,7 @@ use glam::DVec3;
 /// Whether a variance must be known.
 #[derive(Clone, Copy, PartialEq)]
 enum Law {
-    /// It has a closed form.
+    /// A closed form that must be a number.
     Known,
     /// It has none, or the closed form ends (orders without number): what is not known says so by NaN.
     Open,

@@ -20,7 +20,7 @@ use fairflight_transmittance::{
 use glam::{DVec3, dvec3};
 use std::sync::Arc;
 
-/// All checks of this file.
+/// Lists the checks.
 pub(super) fn checks() -> Vec<Check> {
     let steps = PiecewiseConstant::new(vec![0.0, 1.0, 2.5, 4.0], vec![1.2, 0.1, 0.6]).expect(LAWFUL);
     let signed = PiecewiseConstant::new(vec![0.0, 1.0, 2.0, 3.5], vec![1.0, -0.5, 0.4]).expect(LAWFUL);

@@ -16,7 +16,7 @@ use fairflight_transmittance::{
 use glam::{DVec3, dvec3};
 use std::sync::Arc;
 
-/// All checks of this file.
+/// Lists the checks.
 pub(super) fn series() -> Vec<Check> {
     let bump = PiecewiseLinear::new(vec![0.0, 0.5, 1.5], vec![0.1, 1.0, 0.2]).expect(LAWFUL);
     let signed = PiecewiseConstant::new(vec![0.0, 0.4, 0.8, 1.2], vec![1.0, -0.2, 0.4]).expect(LAWFUL);

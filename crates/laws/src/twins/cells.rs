@@ -64,7 +64,7 @@ fn half() -> Bounded<Constant> {
     Bounded::new(Constant::new(0.5, 4.0).expect(LAWFUL), 1.0).expect(LAWFUL)
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // P(N ≥ k) = 2/(k + 1)! for 1/k!: a stratum has the expectation 1 − R + Σ_{k≥2} 2 (−R)^k/(k + 1)! = 2 (1 − e^−R)/R − 1 = 0.5739 for

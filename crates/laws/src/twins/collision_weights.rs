@@ -91,7 +91,7 @@ fn outside_the_terminating_domain(sigma_t: f64, length: f64, sampling: f64, run:
     Rejection { rejected: rejection.rejected && refused, ..rejection }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // r = 4/3: E = exp(σ_samp L (|1 − r| − 1)) = exp(−1) for exp(−2); Var/T² = exp(8/3) − 1 = 13.4.

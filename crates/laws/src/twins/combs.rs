@@ -191,7 +191,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for EvenHalfOnly {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         on_two_values(

@@ -59,7 +59,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for FitsItsOwnWalk {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // E = T / T_main = e^{0.5·4} T on the steps below.

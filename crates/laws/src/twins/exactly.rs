@@ -61,7 +61,7 @@ impl Breakpoints for Midpoints {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         twin(

@@ -117,7 +117,7 @@ fn without_energy(taken_for: [fn(f64) -> f64; 2], shows: &str, run: Run) -> Reje
     judged(&field, (&right, &[]), Weights::Any, &twin, shows, run)
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // The first tentative collision in the second cell is accepted with 1/4 for 1: escape has the probability

@@ -77,7 +77,7 @@ fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> 
     .about([Kind::LineIntegral])
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // The flight may leave at once, which p_V has already excluded: E = (1 − p_V) + p_V T = 0.423 for 0.333.

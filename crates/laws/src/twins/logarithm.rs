@@ -20,7 +20,7 @@ impl<S: UniformSource> UniformSource for Printed<S> {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         Twin::new(

@@ -26,7 +26,7 @@ fn collides_as_printed(sigma_t: f64, majorant: f64, u: f64) -> bool {
     sigma_t / majorant >= u // right: u < sigma_t / majorant
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // E = exp(−∫ min(σ_t, majorant)) = exp(−1.6) for exp(−2): (0.2019 − 0.1353)/sqrt(0.1353·0.8647/N).

@@ -227,7 +227,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for StratifiesEveryStep {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     let cube = "a cube of 2 mean free paths, albedo 0.8, point light inside";
     vec![

@@ -46,7 +46,7 @@ impl PhaseFunction for Cancelling {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // The mean cosine is −g, the variance that of the right one, (1 + 2g²)/3 − g² = 1/4 at g = 1/2: 2g √N/σ.

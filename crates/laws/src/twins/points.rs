@@ -46,7 +46,7 @@ fn judged(run: Run) -> Rejection {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     // A flight escapes for u ≥ 1 − e^−1 = 0.632: 6/8 and 7/8 of the eight points, 1/4 for e^−1 = 0.3679. As independent
     // estimates they would have the variance e^−1 (1 − e^−1).

@@ -42,7 +42,7 @@ fn tracking<R: InvertOpticalThickness>(sampling: R) -> Tracking<DoubleParticle, 
     Tracking::new(DoubleParticle { albedo: Albedo::default() }, Vacuum::new(2.0), sampling)
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     let field = || PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
     vec![

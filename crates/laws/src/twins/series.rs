@@ -87,7 +87,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for KnowsTheLookup {
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         // With y = t_c − τ = 2.75 the terms beyond the fourth are P(N > 4) = 0.145 of T, N Poisson of mean y: z = 0.145 √(N/V) with

@@ -112,7 +112,7 @@ fn weighed(weigh: fn(f64, f64, f64) -> f64, run: Run) -> Rejection {
     judged(&right, Weights::Any, &Weighing(weigh), run)
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     const PROFILE: &str = "sigma_t 0.75 and 0.5, length 2, majorant 1; the first";
     vec![

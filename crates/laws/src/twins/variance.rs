@@ -27,7 +27,7 @@ fn of_the_whole_extinction(
     }
 }
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
         Twin::new(

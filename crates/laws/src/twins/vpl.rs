@@ -165,7 +165,7 @@ const MORE: u64 = 900_000;
 /// A medium so thin that the floor counts.
 const THIN: f64 = 1.0;
 
-/// All twins of this file.
+/// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     let twin = |id, text, profile, (mistake, scene, z): (Mistake, fn() -> Local, f64)| {
         let is_skewed =
