@@ -34,7 +34,10 @@ fn main() {
     }
     costs.sort_unstable();
     let quantile = |q: f64| costs[((costs.len() - 1) as f64 * q) as usize];
-    println!("{certified} of {count} certified, {wrong} wrong; the worst, seed {}, off by {:.3} of its error", worst.1, worst.0);
+    println!(
+        "{certified} of {count} certified, {wrong} wrong; the worst, seed {}, off by {:.3} of its error",
+        worst.1, worst.0
+    );
     println!(
         "operations: median {}, 99 % {}, most {}; borders: {:.1} in the mean",
         quantile(0.5),
