@@ -5,15 +5,17 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_harness::plan::{AnyControl, AnySampling, VoxelLattice};
+use fairflight_harness::estimator::{ControlSpec, DoubleParticleSpec, EstimatorKind, Trial};
+use fairflight_harness::field::{AnyProfile, VoxelLattice};
 use fairflight_media::{
-    AnalyticCosine, Bounds, Constant, Counted, ExpressionProfile, Extinction, Perlin, PerlinParameters, Ray,
-    Vacuum, Voxels,
+    AnalyticCosine, Bounds, Certified, Constant, Counted, ExpressionProfile, Extinction, Perlin,
+    PerlinParameters, Ray, Vacuum, Voxels,
 };
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::{Tracking, TransmittanceEstimator};
 use glam::{DAffine3, DVec3};
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 const LENGTH: f64 = 20.0;
@@ -35,12 +37,6 @@ fn ratio_tracking(length: f64, sigma_samp: f64) -> Tracking<DoubleParticle, Vacu
     Tracking::new(model(), Vacuum::new(length), Constant::new(sigma_samp, length).expect("finite"))
 }
 
-/// The same estimator as the harness builds it: control and sampling extinction behind enums.
-fn through_the_registry(length: f64, sigma_samp: f64) -> Tracking<DoubleParticle, AnyControl, AnySampling> {
-    let sampling = AnySampling::Constant(Constant::new(sigma_samp, length).expect("finite"));
-    Tracking::new(model(), AnyControl::None(Vacuum::new(length)), sampling)
-}
-
 fn model() -> DoubleParticle {
     DoubleParticle { albedo: Albedo::default() }
 }
@@ -53,6 +49,12 @@ fn estimates<F: Extinction, E: TransmittanceEstimator<F>>(
     source: &mut Seeded,
 ) -> f64 {
     (0..count).map(|_| estimator.estimate(field, source)).sum()
+}
+
+/// The same estimates as the harness draws them: a batch per call, its look-ups watched.
+fn batch(trial: &dyn Trial, estimates: &mut [f64], source: &mut Seeded) -> f64 {
+    trial.draw(source, estimates).expect("the profile has no unlawful value");
+    estimates.iter().sum()
 }
 
 /// The look-ups that `count` estimates make from seed 1.
@@ -75,13 +77,20 @@ fn paired(mut a: impl FnMut() -> f64, mut b: impl FnMut() -> f64) -> f64 {
     ratios[ratios.len() / 2]
 }
 
-/// Criterion's figures and the paired ratios of one field.
-fn bench_field<F: Extinction + Copy>(criterion: &mut Criterion, name: &str, field: F, sigma_samp: f64) {
+/// Criterion's figures and the paired ratios of one field, which is that of the profile.
+fn bench_field<F: Extinction + Copy>(
+    criterion: &mut Criterion,
+    name: &str,
+    (field, profile): (F, &AnyProfile),
+    sigma_samp: f64,
+) {
     let length = field.length();
     let count = (LOOKUPS as f64 / (sigma_samp * length)) as u64;
     let lookups = lookups_of(field, sigma_samp, count);
     let direct = ratio_tracking(length, sigma_samp);
-    let registry = through_the_registry(length, sigma_samp);
+    let spec = DoubleParticleSpec::at(sigma_samp, ControlSpec::none());
+    let registry = spec.prepare(profile).expect("lawful").trial;
+    let mut buffer = vec![0.0; count as usize];
 
     let mut group = criterion.benchmark_group("lookups");
     group.sample_size(30).throughput(Throughput::Elements(lookups));
@@ -92,7 +101,7 @@ fn bench_field<F: Extinction + Copy>(criterion: &mut Criterion, name: &str, fiel
         b.iter(|| estimates(&field, &direct, count, &mut Seeded::new(1)));
     });
     group.bench_function(BenchmarkId::new("registry", name), |b| {
-        b.iter(|| estimates(&field, &registry, count, &mut Seeded::new(1)));
+        b.iter(|| batch(&*registry, &mut buffer, &mut Seeded::new(1)));
     });
     group.finish();
 
@@ -101,7 +110,7 @@ fn bench_field<F: Extinction + Copy>(criterion: &mut Criterion, name: &str, fiel
         || bare(&field, lookups, &mut Seeded::new(1)),
     );
     let to_direct = paired(
-        || estimates(&field, &registry, count, &mut Seeded::new(1)),
+        || batch(&*registry, &mut buffer, &mut Seeded::new(1)),
         || estimates(&field, &direct, count, &mut Seeded::new(1)),
     );
     println!(
@@ -114,28 +123,33 @@ fn main() {
     let axis = |origin: DVec3, direction: DVec3, bounds: &Bounds| {
         bounds.clip(origin, direction, None).expect("finite").expect("the ray meets the bounds")
     };
-    bench_field(&mut criterion, "constant", Constant::new(0.5, LENGTH).expect("finite"), 1.0);
+    let constant = Constant::new(0.5, LENGTH).expect("finite");
+    bench_field(&mut criterion, "constant", (constant, &AnyProfile::Constant(constant)), 1.0);
     // Five times as many look-ups per walk: what the end of a walk costs shows in the difference.
     let long = Constant::new(0.5, 5.0 * LENGTH).expect("finite");
-    bench_field(&mut criterion, "constant, long", long, 1.0);
+    bench_field(&mut criterion, "constant, long", (long, &AnyProfile::Constant(long)), 1.0);
 
-    let cosine = AnalyticCosine::new(1.0).expect("finite");
+    let cosine = Arc::new(AnalyticCosine::new(1.0).expect("finite"));
     let clip = axis(DVec3::ZERO, DVec3::Z, &AnalyticCosine::default_bounds());
-    bench_field(&mut criterion, "eq21", Ray::new(&cosine, &clip), 1.0);
+    let profile = AnyProfile::AnalyticCosine(Ray::new(Arc::clone(&cosine), &clip));
+    bench_field(&mut criterion, "eq21", (Ray::new(&*cosine, &clip), &profile), 1.0);
 
     let bytes = include_bytes!("../../tests/fixtures/eq21_64.vdb");
     let grid = fairflight_volumes::read_float_grid(bytes, None).expect("a fixture of ours");
     let bounds = Bounds::aligned_box(DVec3::splat(0.0), DVec3::splat(63.0)).expect("ordered");
-    let voxels = Voxels::new(VoxelLattice(grid), DAffine3::IDENTITY, 0.3).expect("finite");
+    let voxels = Arc::new(Voxels::new(VoxelLattice(grid), DAffine3::IDENTITY, 0.3).expect("finite"));
     let clip = axis(DVec3::new(-10.0, 20.0, 17.0), DVec3::new(1.0, 0.3, 0.4), &bounds);
-    bench_field(&mut criterion, "voxels", Ray::new(&voxels, &clip), 0.35);
+    let profile = AnyProfile::Voxels(Ray::new(Arc::clone(&voxels), &clip));
+    bench_field(&mut criterion, "voxels", (Ray::new(&*voxels, &clip), &profile), 0.35);
 
     let formula =
         ExpressionProfile::new("0.3 + 0.25*sin(7*s)*exp(-0.2*s)", LENGTH, Some(0.6)).expect("a formula");
-    bench_field(&mut criterion, "expression", &formula, 0.6);
+    let profile = AnyProfile::Expression(Certified::new(formula.clone()));
+    bench_field(&mut criterion, "expression", (&formula, &profile), 0.6);
 
-    let perlin = Perlin::new(PerlinParameters::default()).expect("lawful");
+    let perlin = Arc::new(Perlin::new(PerlinParameters::default()).expect("lawful"));
     let clip = axis(DVec3::new(0.3, 0.2, 0.0), DVec3::Z, &AnalyticCosine::default_bounds());
-    bench_field(&mut criterion, "perlin", Ray::new(&perlin, &clip), 1.0);
+    let profile = AnyProfile::Perlin(Certified::new(Ray::new(Arc::clone(&perlin), &clip)));
+    bench_field(&mut criterion, "perlin", (Ray::new(&*perlin, &clip), &profile), 1.0);
     criterion.final_summary();
 }

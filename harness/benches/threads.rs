@@ -1,6 +1,7 @@
 //! What a second thread brings: the same measurement on one thread and on two, in turn, within one run.
 
-use fairflight_harness::plan::{MediumLibrary, Plan};
+use fairflight_harness::field::MediumLibrary;
+use fairflight_harness::plan::Plan;
 use fairflight_harness::spec::{Overrides, Request};
 use fairflight_harness::{experiment, reference};
 use fairflight_media::Tolerance;

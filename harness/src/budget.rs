@@ -1,7 +1,7 @@
 //! Work that is bounded: what a run is expected to look up is known from its rates before anything is drawn.
 
 use crate::Failure;
-use crate::plan::{AnyProfile, FieldJob, KnownField};
+use crate::field::AnyProfile;
 use cpu_time::ThreadTime;
 
 /// How many look-ups a run may be expected to make.
@@ -58,29 +58,18 @@ pub fn patience(lookups: f64, seconds: f64) -> Option<String> {
 /// about as those of a walk do.
 #[must_use]
 pub fn seconds_per_lookup(profile: &AnyProfile) -> f64 {
-    profile.with(Time)
-}
-
-struct Time;
-
-impl FieldJob for Time {
-    type Output = f64;
-    fn run<F: KnownField>(self, field: &F) -> f64
-    where
-        for<'a> &'a F: crate::plan::Field,
-    {
-        const ROUNDS: u32 = 5;
-        const LOOKUPS: u32 = 512;
-        // Multiples of the golden ratio, modulo 1, are even and in no order.
-        let distances = |i: u32| field.length() * (f64::from(i) * 0.618_033_988_749_894_9).fract();
-        let round = |_| {
-            let clock = ThreadTime::now();
-            let sum: f64 = (0..LOOKUPS).map(|i| field.sigma_t(distances(i))).sum();
-            std::hint::black_box(sum);
-            clock.elapsed().as_secs_f64() / f64::from(LOOKUPS)
-        };
-        (0..ROUNDS).map(round).fold(f64::INFINITY, f64::min)
-    }
+    const ROUNDS: u32 = 5;
+    const LOOKUPS: u32 = 512;
+    let field = profile.field();
+    // Multiples of the golden ratio, modulo 1, are even and in no order.
+    let distances = |i: u32| field.length() * (f64::from(i) * 0.618_033_988_749_894_9).fract();
+    let round = |_| {
+        let clock = ThreadTime::now();
+        let sum: f64 = (0..LOOKUPS).map(|i| field.sigma_t(distances(i))).sum();
+        std::hint::black_box(sum);
+        clock.elapsed().as_secs_f64() / f64::from(LOOKUPS)
+    };
+    (0..ROUNDS).map(round).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

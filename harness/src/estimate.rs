@@ -3,7 +3,7 @@
 use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::cli::EstimateArguments;
 use crate::experiment::Prepared;
-use crate::plan::MediumLibrary;
+use crate::field::MediumLibrary;
 use crate::result::ExperimentResult;
 use crate::spec::{Overrides, Request};
 use crate::{DONE, Environment, Failure, UNSOUND, interrupt};

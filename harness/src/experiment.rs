@@ -2,11 +2,10 @@
 
 use crate::Failure;
 use crate::budget::Budget;
+use crate::estimator::{Expected, Prepared as PreparedEstimator, Work};
+use crate::field::{AnyProfile, MediumLibrary, ThicknessMethod};
 use crate::measure::{Draws, Measurement, measure};
-use crate::plan::{
-    AnyEstimator, AnyProfile, Estimator, EstimatorJob, Expected, Field, FieldJob, KnownField, Lawful,
-    MediumLibrary, Plan, ThicknessMethod, Work,
-};
+use crate::plan::Plan;
 use crate::reference::{Prediction, Truth, explain, predict};
 use crate::result::{Cost, Efficiency, Estimate, ExperimentResult, Provenance, ReferenceResult};
 use crate::spec::Experiment;
@@ -31,7 +30,7 @@ impl Prepared {
     /// # Errors
     /// If a file cannot be read, the parts do not fit, or they would take too long.
     pub fn of(experiment: &Experiment, library: &MediumLibrary, budget: Budget) -> Result<Self, Failure> {
-        let profile = AnyProfile::build(&experiment.profile, library)?;
+        let profile = experiment.profile.kind().build(library)?;
         let work = Work::on(&profile, &experiment.estimator);
         let samples = experiment.samples;
         let check = |each: f64| {
@@ -110,42 +109,14 @@ pub fn measure_plan(
 /// If a look-up is not lawful, or an estimate not finite.
 pub fn draw(
     profile: &AnyProfile,
-    estimator: &AnyEstimator,
+    estimator: &PreparedEstimator,
     truth: &Truth,
     (samples, seed, counted): (u64, u64, u64),
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    let sequential = matches!(estimator, AnyEstimator::Beyond(beyond) if beyond.is_sequential());
-    let draws = Draws { samples, seed, counted, sequential };
-    profile.with(Draw { profile, estimator, truth, draws, advance })
-}
-
-#[derive(Clone, Copy)]
-struct Draw<'a> {
-    profile: &'a AnyProfile,
-    estimator: &'a AnyEstimator,
-    truth: &'a Truth,
-    draws: Draws,
-    advance: &'a (dyn Fn(u64) + Sync),
-}
-
-impl FieldJob for Draw<'_> {
-    type Output = Result<Measurement, Failure>;
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
-        self.estimator.with(field, self)?
-    }
-}
-
-impl EstimatorJob for Draw<'_> {
-    type Output = Result<Measurement, Failure>;
-    fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
-        let upper_bound = self.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
-        let place = |violation: Violation| explain(self.profile, self.estimator, self.truth, violation);
-        measure(Lawful { field, estimator, upper_bound }, self.draws, &place, self.advance)
-    }
+    let draws = Draws { samples, seed, counted, sequential: estimator.is_sequential };
+    let place = |violation: Violation| explain(profile, estimator, truth, violation);
+    measure(&*estimator.trial, draws, &place, advance)
 }
 
 /// What was measured against what is known.
@@ -175,7 +146,7 @@ pub fn compare(
         certainty: truth.certainty(unit),
         moments: Some(closed),
         variance_bound: variance_bound(&prediction.theory).filter(|_| closed.mean == 1.0),
-        scores: plan.estimator.scores(&plan.profile, &truth.knowledge, unit),
+        scores: plan.estimator.scores(unit),
         ..Reference::exact(closed.mean)
     };
     let verdict = judge(&measurement.moments.scaled(unit.scale()), &reference, alpha);
@@ -204,7 +175,7 @@ pub fn analyse(
     let variance_error =
         closed.variance_standard_error(n).map(|e| scale(e, 2)).or_else(|| moments.variance_standard_error());
     let log_variance = 2.0 * -truth.optical_thickness + theory.log_relative_variance;
-    let preparation = plan.estimator.preparation_lookups() as f64;
+    let preparation = plan.estimator.preparation_lookups as f64;
     let lookups = lookups_per_sample + preparation;
     let mean = moments.mean().unwrap_or(f64::NAN);
     let efficiency = |cost: f64| {
@@ -281,15 +252,7 @@ fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> S
             "quadrature with a bound of its error on every panel (certified)"
         }
     };
-    let variance = match &plan.estimator {
-        AnyEstimator::Woodcock { .. } => "variance: closed form T(1 - T)",
-        AnyEstimator::DoubleParticle(_) | AnyEstimator::SingleParticle(_) => {
-            "variance: szirmay-kalos-2017 eq. 16, integrated over the ray"
-        }
-        AnyEstimator::LineIntegral { .. } => "variance: quadrature over the shared shift",
-        AnyEstimator::RayMarching(_) => "variance: quadrature over the offset (a biased baseline)",
-        AnyEstimator::Beyond(beyond) => &beyond.variance_method(),
-    };
+    let variance = &plan.estimator.variance;
     let errors =
         if known { "standard errors: closed-form moments" } else { "standard errors: sample moments" };
     let mut method = format!("optical thickness: {thickness}; {variance}; {errors}");

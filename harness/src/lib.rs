@@ -17,11 +17,14 @@ mod verify;
 
 pub mod budget;
 pub mod comparison;
+pub mod estimator;
 pub mod experiment;
+pub mod field;
 pub mod image;
 pub mod interrupt;
 pub mod measure;
 pub mod plan;
+pub mod reader;
 pub mod reference;
 pub mod report;
 pub mod result;

@@ -1,10 +1,10 @@
 //! Drawing estimates in parallel, the same ones whatever the number of threads.
 
-use crate::plan::{Estimator, Field, Lawful};
+use crate::estimator::Trial;
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
-use fairflight_laws::{BATCH, batch_count, batch_moments, batch_size, draw_batch};
-use fairflight_media::{Counted, Violation, Watched};
+use fairflight_laws::{BATCH, batch_count, batch_moments, batch_size};
+use fairflight_media::Violation;
 use fairflight_sources::Seeded;
 use fairflight_stats::Moments;
 use rayon::prelude::*;
@@ -56,25 +56,13 @@ pub struct Draws {
 /// # Errors
 /// If a look-up is not finite or not lawful for the estimator (the place is named by `place`), an estimate is
 /// not finite, or an interrupt asked to stop.
-pub fn measure<G: Field, E: Estimator<G>>(
-    lawful: Lawful<G, E>,
+pub fn measure(
+    trial: &dyn Trial,
     draws: Draws,
     place: &(dyn Fn(Violation) -> Failure + Sync),
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    in_batches(draws, advance, &|index, values| one_batch(lawful, draws, index, values, place))
-}
-
-/// What draws a batch by its number, into a buffer of estimates.
-type DrawBatch<'a> = dyn Fn(u64, &mut Vec<f64>) -> Result<Batch, Failure> + Sync + 'a;
-
-/// Draws all batches on the threads of the current pool, and puts them together in their order. One copy for all estimators: a call
-/// per batch costs nothing.
-fn in_batches(
-    Draws { samples, sequential, .. }: Draws,
-    advance: &(dyn Fn(u64) + Sync),
-    draw: &DrawBatch<'_>,
-) -> Result<Measurement, Failure> {
+    let Draws { samples, sequential, .. } = draws;
     let batches = batch_count(samples);
     let mut moments = Moments::new();
     let (mut seconds, mut lookups, mut counted, mut negative) = (0.0, 0, 0, 0);
@@ -83,7 +71,7 @@ fn in_batches(
         let buffer = || Vec::with_capacity(BATCH as usize);
         let one = |values: &mut Vec<f64>, index| {
             interrupt::check()?;
-            let batch = draw(index, values)?;
+            let batch = one_batch(trial, draws, index, values, place)?;
             advance(batch_size(samples, index));
             Ok(batch)
         };
@@ -106,29 +94,22 @@ fn in_batches(
     Ok(Measurement { moments, lookups_per_sample: lookups as f64 / counted as f64, seconds, negative })
 }
 
-fn one_batch<G: Field, E: Estimator<G>>(
-    lawful: Lawful<G, E>,
+fn one_batch(
+    trial: &dyn Trial,
     Draws { samples, seed, counted: most_counted, .. }: Draws,
     index: u64,
     values: &mut Vec<f64>,
     place: &(dyn Fn(Violation) -> Failure + Sync),
 ) -> Result<Batch, Failure> {
-    let estimator = lawful.estimator;
-    let watched = Watched::new(lawful.field, lawful);
+    let size = batch_size(samples, index);
+    values.resize(size as usize, 0.0);
     let clock = ThreadTime::now();
-    draw_batch(seed, index, samples, values, |source: &mut Seeded| estimator.estimate(&watched, source));
+    let drawn = trial.draw(&mut Seeded::for_batch(seed, index), values);
     let seconds = clock.elapsed().as_secs_f64();
-    if let Some(violation) = watched.violation() {
-        return Err(place(violation));
-    }
+    drawn.map_err(place)?;
     let moments = batch_moments(seed, index, values).map_err(Failure::refused)?;
     let negative = values.iter().filter(|value| **value < 0.0).count() as u64;
-    let (mut lookups, mut counted) = (0, 0);
-    if index * BATCH < most_counted {
-        let counting = Counted::new(watched);
-        draw_batch(seed, index, samples, values, |source: &mut Seeded| estimator.estimate(&counting, source));
-        lookups = counting.lookups();
-        counted = values.len() as u64;
-    }
+    let counted = if index * BATCH < most_counted { size } else { 0 };
+    let lookups = trial.count(&mut Seeded::for_batch(seed, index), counted);
     Ok(Batch { moments, seconds, lookups, counted, negative })
 }

@@ -1,12 +1,10 @@
 //! The truth about a planned experiment, before a sample is drawn; and whether the experiment is lawful at all.
 
 use crate::Failure;
-use crate::plan::{
-    AnyEstimator, AnyProfile, Estimator, EstimatorJob, Field, FieldJob, Knowledge, KnownField, Lawful,
-    ThicknessMethod,
-};
+use crate::estimator::{AnyPieces, Prepared};
+use crate::field::{AnyProfile, Knowledge, ThicknessMethod};
 use fairflight_laws::Unit;
-use fairflight_media::{Domain, Doubt, RayQuadrature, Tolerance, Violation};
+use fairflight_media::{Doubt, RayQuadrature, Tolerance, Violation};
 use fairflight_stats::Certainty;
 use fairflight_transmittance::Theory;
 
@@ -69,42 +67,24 @@ impl Truth {
     /// # Errors
     /// If σ_t is not finite somewhere, exceeds the majorant that the profile declares, or cannot be integrated.
     pub fn of(profile: &AnyProfile, tolerance: Tolerance) -> Result<Self, Failure> {
-        profile.with(Integrate { profile, tolerance })
-    }
-}
-
-struct Integrate<'a> {
-    profile: &'a AnyProfile,
-    tolerance: Tolerance,
-}
-
-/// Rounding of a closed form, relative to ∫ |σ_t|: a few dozen terms, each rounded a few times.
-const CLOSED_FORM_ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-impl FieldJob for Integrate<'_> {
-    type Output = Result<Truth, Failure>;
-
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
+        let field = profile.field();
         let knowledge = field.knowledge();
         let certificate = field.certificate();
         let certified = certificate.filter(|certificate| certificate.doubt().is_none());
-        let mut quadrature = RayQuadrature::new(field, &[]);
+        let mut quadrature = RayQuadrature::new(field as AnyPieces<'_>, &[]);
         let bound = knowledge.upper_bound.unwrap_or(f64::INFINITY);
         // A closed form needs the integral of |sigma_t| only, roughly: its rounding is relative to that. A certificate needs nothing: the
         // values at its nodes are looked at alone.
         let is_known = knowledge.optical_thickness.is_some() || certified.is_some();
-        let tolerance = if is_known { Tolerance::to(0.1) } else { self.tolerance };
+        let tolerance = if is_known { Tolerance::to(0.1) } else { tolerance };
         let integral = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t, sigma_t.abs()]);
         let mut observed = (f64::INFINITY, f64::NEG_INFINITY);
         for (s, sigma_t) in quadrature.nodes() {
             if !sigma_t.is_finite() {
-                return Err(not_finite(self.profile, s, sigma_t));
+                return Err(not_finite(profile, s, sigma_t));
             }
             if sigma_t > bound {
-                return Err(above_declared(self.profile, s, sigma_t, bound));
+                return Err(above_declared(profile, s, sigma_t, bound));
             }
             observed = (observed.0.min(sigma_t), observed.1.max(sigma_t));
         }
@@ -123,6 +103,9 @@ impl FieldJob for Integrate<'_> {
     }
 }
 
+/// Rounding of a closed form, relative to ∫ |σ_t|: a few dozen terms, each rounded a few times.
+const CLOSED_FORM_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 fn not_finite(profile: &AnyProfile, s: f64, sigma_t: f64) -> Failure {
     Failure::refused(format!("profile: sigma_t is {sigma_t} at {}", profile.place(s)))
 }
@@ -136,12 +119,7 @@ fn above_declared(profile: &AnyProfile, s: f64, sigma_t: f64, bound: f64) -> Fai
 
 /// Why a look-up was not lawful, in words.
 #[must_use]
-pub fn explain(
-    profile: &AnyProfile,
-    estimator: &AnyEstimator,
-    truth: &Truth,
-    violation: Violation,
-) -> Failure {
+pub fn explain(profile: &AnyProfile, estimator: &Prepared, truth: &Truth, violation: Violation) -> Failure {
     let Violation { s, sigma_t } = violation;
     if !sigma_t.is_finite() {
         return not_finite(profile, s, sigma_t);
@@ -152,40 +130,7 @@ pub fn explain(
         return above_declared(profile, s, sigma_t, bound);
     }
     let place = profile.place(s);
-    Failure::refused(match estimator {
-        AnyEstimator::Woodcock { majorant } | AnyEstimator::LineIntegral { majorant, .. } => {
-            if sigma_t < 0.0 {
-                format!("estimator.majorant: needs sigma_t of at least 0, but sigma_t = {sigma_t} at {place}")
-            } else {
-                format!("estimator.majorant: {majorant} is none, since sigma_t = {sigma_t} at {place}")
-            }
-        }
-        AnyEstimator::DoubleParticle(tracking) => {
-            explain_ratio(&place, tracking.ratio_at(s, sigma_t), sigma_t)
-        }
-        AnyEstimator::SingleParticle(tracking) => {
-            explain_ratio(&place, tracking.ratio_at(s, sigma_t), sigma_t)
-        }
-        AnyEstimator::Beyond(beyond) => match beyond.claimed_majorant() {
-            Some(majorant) if sigma_t > majorant => {
-                format!("estimator.majorant: {majorant} is none, since sigma_t = {sigma_t} at {place}")
-            }
-            _ => format!("estimator: {} is not defined for sigma_t = {sigma_t} at {place}", beyond.kind()),
-        },
-        AnyEstimator::RayMarching(_) => format!("estimator: not defined for sigma_t = {sigma_t} at {place}"),
-    })
-}
-
-fn explain_ratio(place: &str, ratio: Option<f64>, sigma_t: f64) -> String {
-    match ratio {
-        None => format!(
-            "estimator.sigma_samp: is 0 where sigma_t − control is not (a silent bias): sigma_t = {sigma_t} at {place}"
-        ),
-        Some(r) => format!(
-            "estimator.version: terminating needs 0 <= r <= 2/(1 + albedo), but r = (sigma_t − control)/sigma_samp = \
-             {r} at {place}"
-        ),
-    }
+    estimator.objection(&place, s, sigma_t)
 }
 
 /// What is known of an estimator on a profile.
@@ -204,11 +149,11 @@ pub struct Prediction {
 /// sampling extinction of zero where it may not be.
 pub fn predict(
     profile: &AnyProfile,
-    estimator: &AnyEstimator,
+    estimator: &Prepared,
     truth: &Truth,
     tolerance: Tolerance,
 ) -> Result<Prediction, Failure> {
-    if let (Some(majorant), Some(maximum)) = (estimator.claimed_majorant(), truth.knowledge.maximum)
+    if let (Some(majorant), Some(maximum)) = (estimator.claimed_majorant, truth.knowledge.maximum)
         && maximum > majorant
         && profile.length() > 0.0
     {
@@ -216,55 +161,26 @@ pub fn predict(
             "estimator.majorant: {majorant} is none, since sigma_t reaches {maximum}"
         )));
     }
-    profile.with(Predict { profile, estimator, truth, tolerance })
+    let mut nodes = RayQuadrature::new(profile.field() as AnyPieces<'_>, &estimator.breakpoints);
+    // Before the integrals, so that a bad value is named and not integrated.
+    observed(profile, estimator, truth, &nodes)?;
+    let theory = estimator.trial.theory(&mut nodes, truth.optical_thickness, tolerance);
+    Ok(Prediction { theory, observed: observed(profile, estimator, truth, &nodes)? })
 }
 
-#[derive(Clone, Copy)]
-struct Predict<'a> {
-    profile: &'a AnyProfile,
-    estimator: &'a AnyEstimator,
-    truth: &'a Truth,
-    tolerance: Tolerance,
-}
-
-impl FieldJob for Predict<'_> {
-    type Output = Result<Prediction, Failure>;
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
-        self.estimator.with(field, self)?
-    }
-}
-
-impl EstimatorJob for Predict<'_> {
-    type Output = Result<Prediction, Failure>;
-
-    fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
-        let mut quadrature = RayQuadrature::new(field, &self.estimator.breakpoints());
-        let upper_bound = self.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
-        let lawful = Lawful { field, estimator, upper_bound };
-        // Before the integrals, so that a bad value is named and not integrated.
-        self.check(&quadrature, &lawful)?;
-        let theory = estimator.theory(&mut quadrature, self.truth.optical_thickness, self.tolerance);
-        let observed = self.check(&quadrature, &lawful)?;
-        Ok(Prediction { theory, observed })
-    }
-}
-
-impl Predict<'_> {
-    fn check<G: Field>(
-        &self,
-        quadrature: &RayQuadrature<G>,
-        domain: &impl Domain,
-    ) -> Result<(f64, f64), Failure> {
-        let mut observed = self.truth.observed;
-        for (s, sigma_t) in quadrature.nodes() {
-            if !(sigma_t.is_finite() && domain.admits(s, sigma_t)) {
-                return Err(explain(self.profile, self.estimator, self.truth, Violation { s, sigma_t }));
-            }
-            observed = (observed.0.min(sigma_t), observed.1.max(sigma_t));
+/// The range of σ_t that was met, if all of it is lawful.
+fn observed(
+    profile: &AnyProfile,
+    estimator: &Prepared,
+    truth: &Truth,
+    nodes: &RayQuadrature<AnyPieces<'_>>,
+) -> Result<(f64, f64), Failure> {
+    let mut observed = truth.observed;
+    for (s, sigma_t) in nodes.nodes() {
+        if !(sigma_t.is_finite() && estimator.trial.admits(s, sigma_t)) {
+            return Err(explain(profile, estimator, truth, Violation { s, sigma_t }));
         }
-        Ok(observed)
+        observed = (observed.0.min(sigma_t), observed.1.max(sigma_t));
     }
+    Ok(observed)
 }

@@ -1,9 +1,9 @@
 //! What an estimator is expected to cost on a ray, before it is run.
 
 use crate::comparison::TestRay;
-use crate::plan::{Field, FieldJob, KnownField};
-use crate::spec::{
-    BeyondSpec, BoundsSpec, CombKind, ControlSpec, EstimatorSpec, RouletteSpec, SamplingSpec, TeethSpec,
+use crate::estimator::{
+    ControlSpec, DoubleParticleSpec, EstimatorSpec, JitteredRatioSpec, RouletteSpec, SamplingSpec,
+    UnbiasedRayMarchingSpec, WoodcockSpec,
 };
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::{
@@ -26,25 +26,14 @@ const POINTS: u32 = 256;
 
 impl Signs {
     pub(super) fn of(ray: &TestRay, pilot: Pilot, seed: u64) -> Self {
-        struct Square {
-            seed: u64,
-        }
-        impl FieldJob for Square {
-            type Output = f64;
-            fn run<F: KnownField>(self, field: &F) -> f64
-            where
-                for<'a> &'a F: Field,
-            {
-                let mut source = Seeded::new(self.seed);
-                let step = field.length() / f64::from(POINTS);
-                (0..POINTS)
-                    .map(|i| field.sigma_t((f64::from(i) + source.next_uniform()) * step).powi(2) * step)
-                    .sum()
-            }
-        }
+        let (field, mut source) = (ray.profile.field(), Seeded::new(seed));
+        let step = field.length() / f64::from(POINTS);
+        let square = (0..POINTS)
+            .map(|i| field.sigma_t((f64::from(i) + source.next_uniform()) * step).powi(2) * step)
+            .sum();
         Self {
             thickness: ray.truth.optical_thickness,
-            square: ray.profile.with(Square { seed }),
+            square,
             length: ray.profile.length(),
             majorant: ray.majorant,
             pilot,
@@ -54,10 +43,13 @@ impl Signs {
     /// Var/T² and look-ups of an estimator; `None` where nothing but a trial tells.
     pub(super) fn forecast(&self, spec: &EstimatorSpec) -> Option<Forecast> {
         match spec {
-            EstimatorSpec::DoubleParticle { sampling: SamplingSpec::Constant(sigma_samp), control } => {
+            EstimatorSpec::DoubleParticle(DoubleParticleSpec {
+                sigma_samp: SamplingSpec::Constant(sigma_samp),
+                control,
+            }) => {
                 let control = match control {
-                    ControlSpec::None => 0.0,
-                    ControlSpec::Constant(sigma_main) => *sigma_main,
+                    ControlSpec::None(_) => 0.0,
+                    ControlSpec::Constant(constant) => constant.sigma_main,
                     _ => return None,
                 };
                 // szirmay-kalos-2017 eq. 16: ∫ (σ_t − σ_main)²/σ_samp.
@@ -67,14 +59,12 @@ impl Signs {
                 Some(Forecast { relative_variance, lookups: sigma_samp * self.length })
             }
             // A coin; the flight ends at its first collision, on an even ray.
-            EstimatorSpec::Woodcock { majorant } => Some(Forecast {
+            EstimatorSpec::Woodcock(WoodcockSpec { majorant }) => Some(Forecast {
                 relative_variance: self.thickness.exp_m1(),
                 lookups: majorant * self.length * -(-self.thickness).exp_m1() / self.thickness,
             }),
-            EstimatorSpec::Beyond(BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette, segments }) => {
-                self.marching(*teeth, *comb, *roulette, *segments)
-            }
-            EstimatorSpec::Beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Majorant(_), epsilon }) => {
+            EstimatorSpec::UnbiasedRayMarching(spec) => self.marching(spec),
+            EstimatorSpec::JitteredRatio(JitteredRatioSpec { majorant: Some(_), epsilon, .. }) => {
                 let index = [1.0, 0.5, 0.25, 0.125].iter().position(|known| known == epsilon)?;
                 let strata = (self.majorant * self.length / epsilon).ceil().max(1.0);
                 let thickness = self.majorant * self.length / strata;
@@ -87,27 +77,16 @@ impl Signs {
         }
     }
 
-    fn marching(
-        &self,
-        teeth: TeethSpec,
-        comb: CombKind,
-        roulette: RouletteSpec,
-        segments: u32,
-    ) -> Option<Forecast> {
-        let rule = teeth_for(self.majorant * self.length);
-        let teeth = match teeth {
-            TeethSpec::Given(teeth) => teeth,
-            TeethSpec::Rule { pivot } => pivot.map_or(rule, teeth_for),
-        };
-        let (shape, k2) = match comb {
-            CombKind::Uniform if segments == rule && teeth == 1 => (CombShape::Uniform, self.pilot.apart[0]),
-            CombKind::Uniform if segments == 1 && teeth == rule => (CombShape::Uniform, self.pilot.whole[0]),
-            CombKind::EndpointMatched if segments == 1 && teeth == rule => {
-                (CombShape::EndpointMatched, self.pilot.matched[0])
-            }
+    fn marching(&self, spec: &UnbiasedRayMarchingSpec) -> Option<Forecast> {
+        let (rule, segments) = (teeth_for(self.majorant * self.length), spec.segments);
+        let (teeth, shape) = (spec.teeth(self.majorant * self.length), spec.shape());
+        let k2 = match shape {
+            CombShape::Uniform if segments == rule && teeth == 1 => self.pilot.apart[0],
+            CombShape::Uniform if segments == 1 && teeth == rule => self.pilot.whole[0],
+            CombShape::EndpointMatched if segments == 1 && teeth == rule => self.pilot.matched[0],
             _ => return None,
         };
-        let RouletteSpec::Stop(stop) = roulette else { return None };
+        let RouletteSpec::Stop(stop) = spec.roulette else { return None };
         let roulette = Roulette::new(stop).ok()?;
         // Beyond, the second-order law of a comb says nothing.
         if k2 / f64::from(segments) > 1.0 {

@@ -4,9 +4,11 @@ use crate::Failure;
 use crate::cli::AdviseArguments;
 use crate::comparison::{RaySet, chords};
 use crate::estimate::{named, read};
-use crate::plan::{AnyMedium, AnyProfile, MediumLibrary};
+use crate::field::MediumSpec;
+use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
+use crate::reader::Node;
 use crate::report::document::Volume;
-use crate::spec::{IntegratorSpec, MediumSpec, Node, SceneOverrides, SceneSpec, VolumeSpec};
+use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec};
 use fairflight_media::{Bounds, Tolerance};
 use fairflight_scene::Camera;
 use fairflight_sources::{Seeded, UniformSource, derive_seed};
@@ -57,7 +59,8 @@ impl Question {
     pub(super) fn of(arguments: &AdviseArguments, stdin: &mut dyn Read) -> Result<Self, Failure> {
         let library = MediumLibrary::default();
         let question = |name: String, spec: &MediumSpec, camera| -> Result<Self, Failure> {
-            let (medium, bounds) = library.build(spec, "medium").map_err(|failure| failure.within(&name))?;
+            let (medium, bounds) =
+                spec.kind().build(&library, "medium").map_err(|failure| failure.within(&name))?;
             let &AdviseArguments { rays, seed, majorant, .. } = arguments;
             Ok(Self { name, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
         };

@@ -5,7 +5,7 @@ use super::forecast::Signs;
 use super::question::Question;
 use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, TestRay, Unit, entrants, facts, fight, gain};
-use crate::plan::pilot;
+use crate::estimator::pilot;
 use crate::{Environment, Failure};
 use fairflight_sources::derive_seed;
 use fairflight_transmittance::Pilot;

@@ -2,8 +2,8 @@
 
 use super::TestRay;
 use crate::Failure;
+use crate::estimator::Prepared;
 use crate::experiment::draw;
-use crate::plan::AnyEstimator;
 use crate::reference::predict;
 use fairflight_media::Tolerance;
 
@@ -93,14 +93,13 @@ pub struct Effort {
 ///
 /// # Errors
 /// If the estimator is not defined on the ray.
-pub fn fight(ray: &TestRay, estimator: &AnyEstimator, effort: Effort, seed: u64) -> Result<Bout, Failure> {
+pub fn fight(ray: &TestRay, estimator: &Prepared, effort: Effort, seed: u64) -> Result<Bout, Failure> {
     let draws = (effort.samples, seed, effort.counted);
     let measurement = draw(&ray.profile, estimator, &ray.truth, draws, &|_| ())?;
     let moments = measurement.moments.scaled((ray.truth.optical_thickness).exp());
     let samples = moments.count();
     let measured = moments.population_variance().unwrap_or(f64::NAN);
-    let costly = matches!(estimator, AnyEstimator::Beyond(beyond) if beyond.closed_form_is_costly());
-    let theory = if effort.closed && !costly {
+    let theory = if effort.closed && !estimator.closed_form_is_costly {
         let tolerance = Tolerance::to(1e-6);
         Some(predict(&ray.profile, estimator, &ray.truth, tolerance)?.theory)
     } else {
@@ -114,7 +113,7 @@ pub fn fight(ray: &TestRay, estimator: &AnyEstimator, effort: Effort, seed: u64)
         .map(|theory| theory.lookups)
         .filter(|lookups| lookups.is_finite())
         .unwrap_or(measurement.lookups_per_sample)
-        + estimator.preparation_lookups() as f64;
+        + estimator.preparation_lookups as f64;
     Ok(Bout {
         relative_variance,
         measured_variance: measured,

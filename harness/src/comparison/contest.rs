@@ -2,7 +2,7 @@
 
 use super::{Bout, Effort, Entrant, Facts, RaySet, TestRay, fight};
 use crate::Failure;
-use crate::plan::pilot;
+use crate::estimator::pilot;
 use fairflight_sources::derive_seed;
 use fairflight_transmittance::{Experience, Pilot};
 use rayon::prelude::*;

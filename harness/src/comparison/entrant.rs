@@ -2,12 +2,12 @@
 
 use super::TestRay;
 use crate::Failure;
-use crate::plan::{AnyEstimator, Beyond};
-use crate::spec::{
-    BeyondSpec, BoundsSpec, CellsSpec, CombKind, ControlSpec, EstimatorSpec, NextFlightKind, PSeriesKind,
-    RouletteSpec, SamplingSpec, TeethSpec,
+use crate::estimator::{
+    AdaptiveRatioSpec, CellsSpec, ControlSpec, DoubleParticleSpec, EstimatorSpec, JitteredRatioSpec,
+    NextFlightKind, NextFlightSpec, PSeriesSpec, Prepared, ResidualCellsSpec, RouletteSpec, TelescopingSpec,
+    UnbiasedRayMarchingSpec, WoodcockSpec,
 };
-use fairflight_transmittance::{Choice, CombShape, Experience, Hybrid, Roulette};
+use fairflight_transmittance::{Choice, CombShape, Experience, Hybrid, PSeriesVersion, Roulette};
 
 /// What an entrant may know beside the ray: nothing of it comes from the variates that will estimate.
 #[derive(Clone, Debug, Default)]
@@ -42,15 +42,12 @@ impl Entrant {
     ///
     /// # Errors
     /// If it is not defined there.
-    pub fn on(&self, ray: &TestRay, facts: &Facts) -> Result<AnyEstimator, Failure> {
+    pub fn on(&self, ray: &TestRay, facts: &Facts) -> Result<Prepared, Failure> {
         match (self.parameters)(ray, facts) {
-            Parameters::Spec(spec) => AnyEstimator::build(&spec, &ray.profile),
-            Parameters::Hybrid { budget } => Ok(AnyEstimator::Beyond(Beyond::hybrid(
-                &facts.experience,
-                ray.profile.length(),
-                ray.majorant,
-                budget,
-            ))),
+            Parameters::Spec(spec) => spec.kind().prepare(&ray.profile),
+            Parameters::Hybrid { budget } => {
+                Prepared::hybrid(&facts.experience, &ray.profile, ray.majorant, budget)
+            }
         }
     }
 
@@ -71,23 +68,17 @@ impl Entrant {
     pub fn spec(&self, ray: &TestRay, facts: &Facts) -> Option<EstimatorSpec> {
         match (self.parameters)(ray, facts) {
             Parameters::Spec(spec) => Some(spec),
-            Parameters::Hybrid { .. } => {
-                Some(EstimatorSpec::Beyond(match self.hybrid(ray, facts)?.choice() {
-                    Choice::Marching(marching) => BeyondSpec::UnbiasedRayMarching {
-                        teeth: TeethSpec::Given(marching.comb().teeth()),
-                        comb: match marching.comb().shape() {
-                            CombShape::EndpointMatched => CombKind::EndpointMatched,
-                            _ => CombKind::Uniform,
-                        },
-                        roulette: RouletteSpec::Stop(marching.roulette().stop_probability()),
-                        segments: marching.segments(),
-                    },
-                    Choice::Jittered(jittered) => BeyondSpec::JitteredRatio {
-                        bounds: BoundsSpec::Majorant(ray.majorant),
-                        epsilon: jittered.epsilon(),
-                    },
-                }))
-            }
+            Parameters::Hybrid { .. } => Some(match self.hybrid(ray, facts)?.choice() {
+                Choice::Marching(marching) => UnbiasedRayMarchingSpec {
+                    roulette: RouletteSpec::Stop(marching.roulette().stop_probability()),
+                    segments: marching.segments(),
+                    ..UnbiasedRayMarchingSpec::of(marching.comb().shape(), marching.comb().teeth())
+                }
+                .into(),
+                Choice::Jittered(jittered) => {
+                    JitteredRatioSpec::below(ray.majorant, jittered.epsilon()).into()
+                }
+            }),
         }
     }
 }
@@ -102,31 +93,29 @@ fn as_many(ray: &TestRay) -> u32 {
     depth(ray).round().max(1.0) as u32
 }
 
-fn double(sigma_samp: f64, control: ControlSpec) -> Parameters {
-    let sampling = SamplingSpec::Constant(sigma_samp);
-    Parameters::Spec(EstimatorSpec::DoubleParticle { sampling, control })
+fn spec(spec: impl Into<EstimatorSpec>) -> Parameters {
+    Parameters::Spec(spec.into())
 }
 
-fn beyond(spec: BeyondSpec) -> Parameters {
-    Parameters::Spec(EstimatorSpec::Beyond(spec))
+fn double(sigma_samp: f64, control: ControlSpec) -> Parameters {
+    spec(DoubleParticleSpec::at(sigma_samp, control))
 }
 
 fn next_flight(ray: &TestRay, version: NextFlightKind) -> Parameters {
-    beyond(BeyondSpec::NextFlight { majorant: ray.majorant, version })
+    spec(NextFlightSpec { majorant: ray.majorant, version })
 }
 
-fn p_series(ray: &TestRay, version: PSeriesKind) -> Parameters {
-    beyond(BeyondSpec::PSeries { version, pivot: Some(depth(ray)) })
+fn p_series(ray: &TestRay, version: PSeriesVersion) -> Parameters {
+    spec(PSeriesSpec { version, pivot: Some(depth(ray)) })
 }
 
 /// A comb of as many teeth as the rule gives for the majorant.
-fn by_the_rule(ray: &TestRay, comb: CombKind, roulette: RouletteSpec, segments: u32) -> Parameters {
-    let teeth = TeethSpec::Rule { pivot: Some(depth(ray)) };
-    beyond(BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette, segments })
+fn by_the_rule(ray: &TestRay, shape: CombShape, roulette: RouletteSpec) -> Parameters {
+    let marching = UnbiasedRayMarchingSpec::of(shape, 1).by_the_rule(depth(ray));
+    spec(UnbiasedRayMarchingSpec { roulette, ..marching })
 }
 
-/// P = 0.1 (kettunen-2021).
-const USUAL: RouletteSpec = RouletteSpec::Stop(0.9);
+const USUAL: RouletteSpec = RouletteSpec::USUAL;
 
 /// The roulette that fits the variance of earlier combs; the usual one before there are any.
 fn tuned(ray: &TestRay, facts: &Facts) -> RouletteSpec {
@@ -137,11 +126,11 @@ fn tuned(ray: &TestRay, facts: &Facts) -> RouletteSpec {
 }
 
 fn telescoping(ray: &TestRay, level_ratio: f64, endpoint_matching: bool) -> Parameters {
-    beyond(BeyondSpec::Telescoping { teeth: as_many(ray), level_ratio, endpoint_matching })
+    spec(TelescopingSpec { teeth: as_many(ray), level_ratio, endpoint_matching })
 }
 
 fn jittered(ray: &TestRay, epsilon: f64) -> Parameters {
-    beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Majorant(ray.majorant), epsilon })
+    spec(JitteredRatioSpec::below(ray.majorant, epsilon))
 }
 
 /// One cell per unit of the majorant's optical thickness.
@@ -164,42 +153,38 @@ pub fn entrants() -> Vec<Entrant> {
     let ours = |name, parameters| entrant(name, false, parameters);
     let in_cells = |entrant: Entrant| Entrant { needs_cells: true, ..entrant };
     vec![
-        published("ratio tracking", |ray, _| double(ray.majorant, ControlSpec::None)),
-        published("track length", |ray, _| {
-            Parameters::Spec(EstimatorSpec::Woodcock { majorant: ray.majorant })
-        }),
+        published("ratio tracking", |ray, _| double(ray.majorant, ControlSpec::none())),
+        published("track length", |ray, _| spec(WoodcockSpec { majorant: ray.majorant })),
         published("residual ratio, global mean", |ray, facts| {
-            double(2.0 * ray.majorant, ControlSpec::Constant(facts.mean))
+            double(2.0 * ray.majorant, ControlSpec::constant(facts.mean))
         }),
         published("explorers and residual ratio", |ray, _| {
-            let count = (1.2 * depth(ray)).floor().max(1.0) as usize + 1;
-            double(0.4 * ray.majorant, ControlSpec::Explorers { count })
+            let count = (1.2 * depth(ray)).floor().max(1.0) as u32 + 1;
+            double(0.4 * ray.majorant, ControlSpec::through(count))
         }),
         published("next-flight delta", |ray, _| next_flight(ray, NextFlightKind::Delta)),
         published("next-flight ratio", |ray, _| next_flight(ray, NextFlightKind::Ratio)),
         published("unidirectional", |ray, _| next_flight(ray, NextFlightKind::Unidirectional)),
         published("bidirectional", |ray, _| next_flight(ray, NextFlightKind::Bidirectional)),
-        published("p-series CMF", |ray, _| p_series(ray, PSeriesKind::Cmf)),
-        published("p-series cumulative", |ray, _| p_series(ray, PSeriesKind::Cumulative)),
-        published("p-series next-flight", |ray, _| p_series(ray, PSeriesKind::NextFlight)),
-        published("adaptive ratio", |ray, _| {
-            beyond(BeyondSpec::AdaptiveRatio { majorant: ray.majorant, floor: 0.1 })
-        }),
+        published("p-series CMF", |ray, _| p_series(ray, PSeriesVersion::Cmf)),
+        published("p-series cumulative", |ray, _| p_series(ray, PSeriesVersion::Cumulative)),
+        published("p-series next-flight", |ray, _| p_series(ray, PSeriesVersion::NextFlight)),
+        published("adaptive ratio", |ray, _| spec(AdaptiveRatioSpec { majorant: ray.majorant, floor: 0.1 })),
         published("telescoping", |ray, _| telescoping(ray, 0.9, false)),
-        published("unbiased ray marching", |ray, _| by_the_rule(ray, CombKind::Uniform, USUAL, 1)),
+        published("unbiased ray marching", |ray, _| by_the_rule(ray, CombShape::Uniform, USUAL)),
         published("unbiased ray marching, matched", |ray, _| {
-            by_the_rule(ray, CombKind::EndpointMatched, USUAL, 1)
+            by_the_rule(ray, CombShape::EndpointMatched, USUAL)
         }),
         in_cells(published("residual ratio in cells", |ray, _| {
-            beyond(BeyondSpec::ResidualCells { cells: cells(ray), rate: 1.0 })
+            spec(ResidualCellsSpec { cells: cells(ray), rate: 1.0 })
         })),
         ours("telescoping, matched", |ray, _| telescoping(ray, 0.82, true)),
         ours("matched, self-tuned", |ray, facts| {
-            by_the_rule(ray, CombKind::EndpointMatched, tuned(ray, facts), 1)
+            by_the_rule(ray, CombShape::EndpointMatched, tuned(ray, facts))
         }),
-        ours("periodised comb", |ray, _| by_the_rule(ray, CombKind::Periodised, USUAL, 1)),
-        ours("Bernoulli comb 2", |ray, _| by_the_rule(ray, CombKind::Bernoulli2, USUAL, 1)),
-        ours("Bernoulli comb 3", |ray, _| by_the_rule(ray, CombKind::Bernoulli3, USUAL, 1)),
+        ours("periodised comb", |ray, _| by_the_rule(ray, CombShape::Periodised, USUAL)),
+        ours("Bernoulli comb 2", |ray, _| by_the_rule(ray, CombShape::Bernoulli2, USUAL)),
+        ours("Bernoulli comb 3", |ray, _| by_the_rule(ray, CombShape::Bernoulli3, USUAL)),
         ours("factorised, one tooth", |ray, facts| {
             // As many segments as the rule has teeth; each has its share of the variance.
             let segments = fairflight_transmittance::teeth_for(depth(ray));
@@ -207,17 +192,13 @@ pub fn entrants() -> Vec<Entrant> {
                 Some(k2) => RouletteSpec::Stop(Roulette::tuned(k2 / f64::from(segments)).stop_probability()),
                 None => USUAL,
             };
-            beyond(BeyondSpec::UnbiasedRayMarching {
-                teeth: TeethSpec::Given(1),
-                comb: CombKind::Uniform,
-                roulette,
-                segments,
-            })
+            let marching = UnbiasedRayMarchingSpec::of(CombShape::Uniform, 1);
+            spec(UnbiasedRayMarchingSpec { roulette, segments, ..marching })
         }),
         ours("jittered ratio, 0.5", |ray, _| jittered(ray, 0.5)),
         ours("jittered ratio, 0.25", |ray, _| jittered(ray, 0.25)),
         in_cells(ours("jittered ratio in cells, 0.25", |ray, _| {
-            beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Cells(cells(ray)), epsilon: 0.25 })
+            spec(JitteredRatioSpec::in_cells(cells(ray), 0.25))
         })),
         ours("hybrid, frugal", |_, _| Parameters::Hybrid { budget: 2.0 }),
         ours("hybrid", |_, _| Parameters::Hybrid { budget: Hybrid::USUAL_BUDGET }),

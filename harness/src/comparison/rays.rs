@@ -1,6 +1,6 @@
 //! Rays to compare estimators on.
 
-use crate::plan::{AnyMedium, AnyProfile};
+use crate::field::{AnyMedium, AnyProfile};
 use crate::reference::Truth;
 use crate::{Failure, interrupt};
 use fairflight_media::{Bounds, Tolerance};

@@ -2,9 +2,11 @@
 
 use super::single_scattering::SingleScatteringPlan;
 use super::transport::{AmongSurfaces, PathTracerPlan, Stage, VplPlan};
-use super::{AnyMedium, RayEstimator, SpaceSampling, Unlawful, WalkPlan};
+use super::{SpaceSampling, WalkPlan};
 use crate::Failure;
-use crate::spec::{EstimatorSpec, IntegratorSpec, Particles, RayEstimatorSpec, SingleScatteringSpec};
+use crate::estimator::{EstimatorSpec, RayEstimator, Shadow, Unlawful};
+use crate::field::AnyMedium;
+use crate::spec::{IntegratorSpec, Particles, SingleScatteringSpec};
 use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Lights, Spectrum, Volume};
@@ -85,11 +87,11 @@ impl IntegratorPlan {
     /// If a parameter is not lawful.
     pub fn build(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
         match spec {
-            IntegratorSpec::Transmittance { estimator: RayEstimatorSpec::Regular } => {
-                Ok(Self::RegularTransmittance)
-            }
-            IntegratorSpec::Transmittance { estimator: RayEstimatorSpec::Sampled(estimator) } => {
-                RayEstimator::build(estimator, "integrator.estimator").map(Self::Transmittance)
+            IntegratorSpec::Transmittance { estimator } => {
+                Ok(match estimator.kind().for_all_rays("integrator.estimator")? {
+                    Shadow::Regular => Self::RegularTransmittance,
+                    Shadow::Sampled(estimator) => Self::Transmittance(estimator),
+                })
             }
             IntegratorSpec::ParticleTracer(tracer) => {
                 let walk = WalkPlan::build(&tracer.walk, medium, bounds)?;
@@ -259,11 +261,15 @@ impl IntegratorPlan {
     #[must_use]
     pub fn explain(&self, Unlawful { point, sigma_t }: Unlawful) -> Failure {
         let at = format!("sigma_t = {sigma_t} at [{}, {}, {}]", point.x, point.y, point.z);
-        Failure::refused(match self {
-            Self::Transmittance(
-                RayEstimator::Woodcock { majorant } | RayEstimator::LineIntegral { majorant, .. },
-            ) => format!("integrator.estimator.majorant: {majorant} is none, since {at}"),
-            Self::SingleScattering(_) => format!("integrator.shadow (or estimator): not defined for {at}"),
+        let majorant = match self {
+            Self::Transmittance(estimator) => estimator.collision_majorant(),
+            _ => None,
+        };
+        Failure::refused(match (self, majorant) {
+            (_, Some(majorant)) => format!("integrator.estimator.majorant: {majorant} is none, since {at}"),
+            (Self::SingleScattering(_), _) => {
+                format!("integrator.shadow (or estimator): not defined for {at}")
+            }
             _ => format!("integrator.estimator: not defined for {at}"),
         })
     }
@@ -273,7 +279,7 @@ impl IntegratorSpec {
     /// What is biased by design, if anything is.
     #[must_use]
     pub fn biased_baseline(&self) -> Option<&'static str> {
-        let is_biased = |estimator: &RayEstimatorSpec| matches!(estimator, RayEstimatorSpec::Sampled(spec) if EstimatorSpec::is_biased_baseline(spec));
+        let is_biased = EstimatorSpec::is_biased_baseline;
         let biased = match self {
             Self::Transmittance { estimator } => is_biased(estimator),
             Self::SingleScattering(SingleScatteringSpec { estimator, shadow, .. }) => {

@@ -1,7 +1,8 @@
 //! A scene whose parts fit together.
 
-use super::{AnyMedium, AnyPhase, IntegratorPlan, MediumLibrary, surfaces};
+use super::{AnyPhase, IntegratorPlan, surfaces};
 use crate::Failure;
+use crate::field::{AnyMedium, MediumLibrary};
 use crate::image::Image;
 use crate::spec::{Collisions, LightSpec, SceneSpec};
 use fairflight_media::Bounds;
@@ -59,7 +60,7 @@ impl ScenePlan {
     pub fn of(spec: &SceneSpec, library: &MediumLibrary) -> Result<Self, Failure> {
         surfaces::check(spec)?;
         let (medium, bounds) = match &spec.medium {
-            Some(volume) => library.build(&volume.medium, "medium")?,
+            Some(volume) => volume.medium.kind().build(library, "medium")?,
             // A point, where nothing can be anyway.
             None => (AnyMedium::Empty, Bounds::sphere(DVec3::ZERO, 0.0).map_err(Failure::refused)?),
         };

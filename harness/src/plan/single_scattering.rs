@@ -1,12 +1,13 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
 use super::integrator::{admits_majorant, needs_closed_form};
-use super::shadow::Shadow;
-use super::{IntegratorJob, TileIntegrator, Unlawful};
+use super::{IntegratorJob, TileIntegrator};
 use crate::Failure;
-use crate::spec::{
-    ControlSpec, EstimatorSpec, RayEstimatorSpec, SamplingSpec, SingleScatteringSpec, Strategy,
+use crate::estimator::{
+    ControlSpec, DoubleParticleSpec, EstimatorSpec, LineIntegralSpec, SamplingSpec, Shadow,
+    SingleParticleSpec, Unlawful,
 };
+use crate::spec::{SingleScatteringSpec, Strategy};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{LineThickness, Medium, PhaseFunction, Ray};
 use fairflight_paths::single_scattering::{
@@ -60,7 +61,7 @@ impl SingleScatteringPlan {
             sampling: sampling(spec.sampling, spec.heuristic),
             samples: spec.samples_per_ray,
             primary: PrimaryPlan::build(spec, count.is_some())?,
-            shadow: Shadow::build(shadow, key)?,
+            shadow: shadow.kind().for_all_rays(key)?,
             explorers: count.unwrap_or(EXPLORERS),
             shared: spec.shared_explorers,
         })
@@ -206,15 +207,12 @@ impl PrimaryPlan {
                 Err(Failure::refused("integrator.estimator.sigma_samp: must be a number"))
             }
         };
-        let estimator = match &spec.estimator {
-            RayEstimatorSpec::Regular => return Ok(Self::Regular),
-            RayEstimatorSpec::Sampled(estimator) => estimator,
-        };
-        match estimator {
-            EstimatorSpec::DoubleParticle { sampling, .. } => {
-                Ok(Self::Double { sigma_samp: rate(sampling)?, control })
+        match &spec.estimator {
+            EstimatorSpec::Regular(_) => Ok(Self::Regular),
+            EstimatorSpec::DoubleParticle(DoubleParticleSpec { sigma_samp, .. }) => {
+                Ok(Self::Double { sigma_samp: rate(sigma_samp)?, control })
             }
-            EstimatorSpec::SingleParticle { version, albedo, sampling, .. } => {
+            EstimatorSpec::SingleParticle(SingleParticleSpec { version, albedo, sigma_samp, .. }) => {
                 if control && *version == Version::Terminating {
                     return Err(Failure::refused(
                         "integrator.estimator.version: terminating is not defined where the control exceeds the \
@@ -222,34 +220,30 @@ impl PrimaryPlan {
                     ));
                 }
                 let model = SingleParticle { version: *version, albedo: *albedo };
-                Ok(Self::Single { model, sigma_samp: rate(sampling)?, control })
+                Ok(Self::Single { model, sigma_samp: rate(sigma_samp)?, control })
             }
-            EstimatorSpec::RayMarching { steps, offset } => {
+            EstimatorSpec::RayMarching(marching) => {
                 own_points(spec.sampling, "ray_marching")?;
-                let marching = |steps, offset| {
-                    RayMarching::new(steps, offset)
-                        .map_err(|error| Failure::refused(format!("integrator.estimator.steps: {error}")))
-                };
                 let shadow = match &spec.shadow {
-                    None => marching(*steps, *offset)?,
-                    Some(RayEstimatorSpec::Sampled(EstimatorSpec::RayMarching { steps, offset })) => {
-                        marching(*steps, *offset)?
-                    }
+                    None => marching,
+                    Some(EstimatorSpec::RayMarching(shadow)) => shadow,
                     Some(_) => {
                         return Err(Failure::refused(
                             "integrator.shadow.kind: must be ray_marching as the estimator is",
                         ));
                     }
                 };
-                Ok(Self::Marching { steps: *steps, offset: *offset, shadow })
+                let shadow = RayMarching::new(shadow.steps, shadow.offset())
+                    .map_err(|error| Failure::refused(format!("integrator.estimator.steps: {error}")))?;
+                Ok(Self::Marching { steps: marching.steps, offset: marching.offset(), shadow })
             }
-            EstimatorSpec::LineIntegral { majorant, splits } => {
+            EstimatorSpec::LineIntegral(LineIntegralSpec { majorant, splits }) => {
                 own_points(spec.sampling, "line_integral")?;
                 let line = LineIntegral::new(*splits)
                     .map_err(|error| Failure::refused(format!("integrator.estimator.splits: {error}")))?;
                 Ok(Self::Line { majorant: *majorant, line, starts: spec.starts })
             }
-            EstimatorSpec::Woodcock { .. } | EstimatorSpec::Beyond(_) => Err(Failure::refused(
+            _ => Err(Failure::refused(
                 "integrator.estimator.kind: must be regular, double_particle, single_particle, line_integral or \
                  ray_marching for single_scattering, which asks for transmittance at every distance",
             )),
@@ -268,17 +262,16 @@ fn own_points(sampling: Strategy, name: &str) -> Result<(), Failure> {
 }
 
 /// The explorers of an estimator's control, if it has one.
-fn explorers_of(estimator: &RayEstimatorSpec) -> Result<Option<usize>, Failure> {
-    let RayEstimatorSpec::Sampled(
-        EstimatorSpec::DoubleParticle { control, .. } | EstimatorSpec::SingleParticle { control, .. },
-    ) = estimator
+fn explorers_of(estimator: &EstimatorSpec) -> Result<Option<usize>, Failure> {
+    let (EstimatorSpec::DoubleParticle(DoubleParticleSpec { control, .. })
+    | EstimatorSpec::SingleParticle(SingleParticleSpec { control, .. })) = estimator
     else {
         return Ok(None);
     };
-    match *control {
-        ControlSpec::None => Ok(None),
-        ControlSpec::Explorers { count } => Ok(Some(count)),
-        ControlSpec::Constant(_) | ControlSpec::PiecewiseLinear { .. } => Err(Failure::refused(
+    match control {
+        ControlSpec::None(_) => Ok(None),
+        ControlSpec::Explorers(explorers) => Ok(Some(explorers.count as usize)),
+        ControlSpec::Constant(_) | ControlSpec::PiecewiseLinear(_) => Err(Failure::refused(
             "integrator.estimator.control.kind: must be none or explorers for single_scattering",
         )),
     }

@@ -1,11 +1,10 @@
 //! Integrators that know surfaces: the path tracer, and virtual point lights.
 
 use super::integrator::needs_closed_form;
-use super::shadow::Shadow;
-use super::{
-    AnyMedium, AnyPhase, IntegratorJob, MediumJob, Radiant, SpaceSampling, TileIntegrator, Unlawful, WalkPlan,
-};
+use super::{AnyPhase, IntegratorJob, Radiant, SpaceSampling, TileIntegrator, WalkPlan};
 use crate::Failure;
+use crate::estimator::{Shadow, Unlawful};
+use crate::field::{AnyMedium, MediumJob};
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
 use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
@@ -81,7 +80,7 @@ impl TransportPlan {
         Ok(Self {
             walk: WalkPlan::build(&spec.walk, medium, bounds)?,
             shadow: match &spec.estimator {
-                Some(estimator) => Shadow::build(estimator, KEY)?,
+                Some(estimator) => estimator.kind().for_all_rays(KEY)?,
                 None => Shadow::default_for(medium, KEY)?,
             },
             heuristic: spec.heuristic,

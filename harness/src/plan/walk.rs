@@ -1,7 +1,7 @@
 //! Walks through a medium, with their sampling extinction in space.
 
-use super::{AnyMedium, MediumJob};
 use crate::Failure;
+use crate::field::{AnyMedium, MediumJob};
 use crate::spec::{SamplingFieldSpec, WalkSpec};
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
 use fairflight_media::{Bounds, Line, LineThickness, Medium, PhaseFunction};

@@ -3,9 +3,9 @@
 use super::canvas::{Canvas, Spent};
 use super::tile::{AddSamples, Tile};
 use super::virtual_lights::Batch;
-use crate::plan::{
-    AnyPhase, IntegratorJob, IntegratorPlan, MediumJob, Radiant, ScenePlan, Stage, TileIntegrator, Unlawful,
-};
+use crate::estimator::Unlawful;
+use crate::field::MediumJob;
+use crate::plan::{AnyPhase, IntegratorJob, IntegratorPlan, Radiant, ScenePlan, Stage, TileIntegrator};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::{LineThickness, Medium, Observed};
@@ -295,7 +295,8 @@ impl<C: Spectrum> Draw<'_, C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{MediumLibrary, Spectra};
+    use crate::field::MediumLibrary;
+    use crate::plan::Spectra;
     use crate::render::canvas::MeanVariance;
     use crate::spec::{SceneOverrides, SceneSpec};
     use fairflight_media::{EmptySpace, Line};

@@ -10,8 +10,9 @@
 
 use super::painting::moments;
 use crate::Failure;
+use crate::field::MediumLibrary;
 use crate::image::{Exposure, luminance};
-use crate::plan::{MediumLibrary, Radiant, ScenePlan, Spectra};
+use crate::plan::{Radiant, ScenePlan, Spectra};
 use crate::spec::{ComponentSpec, IntegratorSpec, PathTracerSpec, SceneSpec};
 use fairflight_scene::{Camera, Geometry, Segment, Spectrum};
 

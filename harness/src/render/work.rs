@@ -9,11 +9,10 @@ use super::pilot::reduced;
 use super::tile::Tile;
 use super::{Moments, moments};
 use crate::budget::{Budget, patience, seconds_per_lookup};
-use crate::plan::{
-    AnyMedium, AnyProfile, Expected, Field, FieldJob, IntegratorPlan, KnownField, MediumLibrary, RayKnown,
-    ScenePlan, Spectra, Work,
-};
-use crate::spec::{IntegratorSpec, RayEstimatorSpec, SceneSpec, SingleScatteringSpec, VplSpec};
+use crate::estimator::{EstimatorSpec, Expected, RayKnown};
+use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
+use crate::plan::{IntegratorPlan, ScenePlan, Spectra};
+use crate::spec::{IntegratorSpec, SceneSpec, SingleScatteringSpec, VplSpec};
 use crate::{Failure, interrupt};
 use fairflight_media::Bounds;
 use fairflight_paths::SamplingExtinction;
@@ -136,7 +135,7 @@ impl Chords {
             // A ray through more voxels than a profile may have is not needed here.
             let Ok(profile) = AnyProfile::ray(&plan.medium, &clip) else { continue };
             length += clip.length;
-            passed += profile.with(Passed);
+            passed += lit_length(&profile);
             if longest.as_ref().is_none_or(|longest| longest.length() < clip.length) {
                 longest = Some(profile);
             }
@@ -151,10 +150,12 @@ impl Chords {
     }
 
     /// Look-ups of an estimator of transmittance on a ray of so many chords, one at least.
-    fn estimate(&self, estimator: &RayEstimatorSpec, chords: f64) -> f64 {
-        let RayEstimatorSpec::Sampled(estimator) = estimator else { return 1.0 };
+    fn estimate(&self, estimator: &EstimatorSpec, chords: f64) -> f64 {
+        if matches!(estimator, EstimatorSpec::Regular(_)) {
+            return 1.0;
+        }
         let (length, upper_bound) = (chords * self.mean, self.upper_bound);
-        let work = Work::of(estimator, RayKnown { from: 0.0, length, upper_bound, breakpoints: 0 });
+        let work = estimator.kind().work(RayKnown { from: 0.0, length, upper_bound, breakpoints: 0 });
         let lookups = match work.estimate {
             Expected::Exactly(lookups) => lookups,
             Expected::Between(least, most) => least.max(most * self.passed),
@@ -192,25 +193,18 @@ impl Chords {
 }
 
 /// ∫ T(0, s) ds by the midpoint rule; where σ_t is negative light passes.
-struct Passed;
-
-impl FieldJob for Passed {
-    type Output = f64;
-    fn run<F: KnownField>(self, field: &F) -> f64
-    where
-        for<'a> &'a F: Field,
-    {
-        const STEPS: u32 = 64;
-        let step = field.length() / f64::from(STEPS);
-        let (mut thickness, mut passed) = (0.0_f64, 0.0);
-        for i in 0..STEPS {
-            let here = step * field.sigma_t((f64::from(i) + 0.5) * step).max(0.0);
-            // Exact where σ_t is constant over a step.
-            passed += (-thickness).exp() * if here > 0.0 { -(-here).exp_m1() / here } else { 1.0 };
-            thickness += here;
-        }
-        step * passed
+fn lit_length(profile: &AnyProfile) -> f64 {
+    const STEPS: u32 = 64;
+    let field = profile.field();
+    let step = field.length() / f64::from(STEPS);
+    let (mut thickness, mut passed) = (0.0_f64, 0.0);
+    for i in 0..STEPS {
+        let here = step * field.sigma_t((f64::from(i) + 0.5) * step).max(0.0);
+        // Exact where σ_t is constant over a step.
+        passed += (-thickness).exp() * if here > 0.0 { -(-here).exp_m1() / here } else { 1.0 };
+        thickness += here;
     }
+    step * passed
 }
 
 /// What a few walks looked up.

@@ -1,7 +1,8 @@
 //! A scene rendered several times over: images with the mean squared error that they have, and an interval of it.
 
 use crate::Failure;
-use crate::plan::{MediumLibrary, ScenePlan, Spectra};
+use crate::field::MediumLibrary;
+use crate::plan::{ScenePlan, Spectra};
 use crate::render::{Moments, moments};
 use crate::spec::{SceneOverrides, SceneSpec};
 use fairflight_scene::EnvironmentMap;

@@ -2,7 +2,7 @@
 
 use super::document::Options;
 use crate::Environment;
-use crate::plan::MediumLibrary;
+use crate::field::MediumLibrary;
 use fairflight_sources::derive_seed;
 use indicatif::ProgressBar;
 

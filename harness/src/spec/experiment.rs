@@ -1,7 +1,9 @@
 //! A whole experiment: profile, estimator, samples, seed; or a sweep of them.
 
-use super::{EstimatorSpec, Node, ProfileSpec};
 use crate::Failure;
+use crate::estimator::EstimatorSpec;
+use crate::field::ProfileSpec;
+use crate::reader::Node;
 use serde_json::Value;
 
 /// One measurement that is asked for.

@@ -4,25 +4,12 @@
 //! A spec is what was asked for, checked in itself (types, signs, lengths of lists). Whether it fits together (a
 //! majorant that is one, edges that cover the ray) is for the plan to find.
 
-mod beyond;
-mod estimator;
 mod experiment;
-mod medium;
-mod node;
-mod profile;
 mod scene;
-mod written;
 
-pub use beyond::{
-    BeyondSpec, BoundsSpec, CellsSpec, CombKind, NextFlightKind, PSeriesKind, RouletteSpec, TeethSpec,
-};
-pub use estimator::{ControlSpec, EstimatorSpec, SamplingSpec};
 pub use experiment::{Experiment, Overrides, Request, Sweep};
-pub use medium::{MediumKind, MediumSpec, NegativeVoxels};
-pub use node::{Node, Object};
-pub use profile::ProfileSpec;
 pub use scene::{
     ClampSpec, Collisions, ColourSpec, ComponentSpec, IntegratorSpec, LightSpec, MaterialSpec, Particles,
-    PathTracerSpec, PhaseSpec, RayEstimatorSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec,
-    SingleScatteringSpec, Strategy, SurfaceSpec, TracerSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
+    PathTracerSpec, PhaseSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec, SingleScatteringSpec,
+    Strategy, SurfaceSpec, TracerSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };

@@ -5,7 +5,8 @@
 //! as narrow as a billionth of the ray: most runs on them see less than one in all their look-ups.
 
 use fairflight_harness::experiment::{compare, measure_plan};
-use fairflight_harness::plan::{MediumLibrary, Plan};
+use fairflight_harness::field::MediumLibrary;
+use fairflight_harness::plan::Plan;
 use fairflight_harness::reference::{Truth, predict};
 use fairflight_harness::spec::{Overrides, Request};
 use fairflight_media::Tolerance;

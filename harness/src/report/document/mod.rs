@@ -15,8 +15,8 @@ pub use table::{Cell, Column, Table};
 
 use super::result::Claim;
 use crate::budget::Budget;
+use crate::field::{MediumSpec, VdbSpec};
 use crate::result::Provenance;
-use crate::spec::{MediumKind, MediumSpec, NegativeVoxels};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -36,8 +36,7 @@ impl Volume {
     #[must_use]
     pub fn medium(&self) -> MediumSpec {
         let Self { file, grid, scale } = self.clone();
-        let kind = MediumKind::Vdb { file, grid, scale, negative: NegativeVoxels::Refused };
-        MediumSpec { kind, bounds: None }
+        VdbSpec { file, grid, scale, allow_negative: false, bounds: None }.into()
     }
 }
 

@@ -4,17 +4,18 @@ use super::seed_ray;
 use super::sets::rough_profile;
 use crate::Failure;
 use crate::comparison::{TestRay, facts_of};
+use crate::estimator::{
+    ControlSpec, DoubleParticleSpec, EstimatorSpec, JackknifeSpec, JitteredRatioSpec, NaiveSpec, Prepared,
+    ProgressiveMajorantSpec, TelescopingSpec, UnbiasedRayMarchingSpec, WoodcockSpec,
+};
 use crate::experiment::draw;
-use crate::plan::{AnyEstimator, AnyProfile, Beyond};
+use crate::field::AnyProfile;
 use crate::reference::Truth;
 use crate::report::document::{Axis, Chart, Curve, Mark, Section};
 use crate::report::run::Run;
-use crate::spec::{
-    BeyondSpec, BoundsSpec, CombKind, ControlSpec, EstimatorSpec, RouletteSpec, SamplingSpec, TeethSpec,
-};
 use fairflight_media::Tolerance;
 use fairflight_sources::{Seeded, derive_seed};
-use fairflight_transmittance::Hybrid;
+use fairflight_transmittance::{CombShape, Hybrid};
 use rayon::prelude::*;
 
 /// The part of the report, for its seeds.
@@ -50,59 +51,32 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     Ok(section)
 }
 
-fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, AnyEstimator)>, Failure> {
-    let build = |spec: EstimatorSpec| AnyEstimator::build(&spec, &ray.profile);
-    let beyond = |spec: BeyondSpec| build(EstimatorSpec::Beyond(spec));
+fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, Prepared)>, Failure> {
+    let build = |spec: EstimatorSpec| spec.kind().prepare(&ray.profile);
     let depth = ray.majorant * ray.profile.length();
-    let teeth = TeethSpec::Rule { pivot: Some(depth) };
-    let marching = |comb| {
-        beyond(BeyondSpec::UnbiasedRayMarching {
-            teeth,
-            comb,
-            roulette: RouletteSpec::Stop(0.9),
-            segments: 1,
-        })
-    };
+    let marching = |shape| build(UnbiasedRayMarchingSpec::of(shape, 1).by_the_rule(depth).into());
     let facts = facts_of(ray, seed);
     let half = |teeth: u32| (teeth / 2).max(1);
     let rule = fairflight_transmittance::teeth_for(depth);
     Ok(vec![
-        (
-            "hybrid",
-            AnyEstimator::Beyond(Beyond::hybrid(
-                &facts.experience,
-                ray.profile.length(),
-                ray.majorant,
-                Hybrid::USUAL_BUDGET,
-            )),
-        ),
-        ("unbiased ray marching, matched", marching(CombKind::EndpointMatched)?),
-        ("unbiased ray marching", marching(CombKind::Uniform)?),
+        ("hybrid", Prepared::hybrid(&facts.experience, &ray.profile, ray.majorant, Hybrid::USUAL_BUDGET)?),
+        ("unbiased ray marching, matched", marching(CombShape::EndpointMatched)?),
+        ("unbiased ray marching", marching(CombShape::Uniform)?),
         (
             "telescoping",
-            beyond(BeyondSpec::Telescoping {
-                teeth: depth.round() as u32,
-                level_ratio: 0.65,
-                endpoint_matching: false,
-            })?,
+            build(
+                TelescopingSpec { teeth: depth.round() as u32, level_ratio: 0.65, endpoint_matching: false }
+                    .into(),
+            )?,
         ),
-        (
-            "jittered ratio, 0.25",
-            beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Majorant(ray.majorant), epsilon: 0.25 })?,
-        ),
-        (
-            "ratio tracking",
-            build(EstimatorSpec::DoubleParticle {
-                sampling: SamplingSpec::Constant(ray.majorant),
-                control: ControlSpec::None,
-            })?,
-        ),
-        ("track length", build(EstimatorSpec::Woodcock { majorant: ray.majorant })?),
-        ("jackknife (biased)", beyond(BeyondSpec::Jackknife { teeth: half(rule) })?),
-        ("naive (biased)", beyond(BeyondSpec::Naive { teeth: half(rule) })?),
+        ("jittered ratio, 0.25", build(JitteredRatioSpec::below(ray.majorant, 0.25).into())?),
+        ("ratio tracking", build(DoubleParticleSpec::at(ray.majorant, ControlSpec::none()).into())?),
+        ("track length", build(WoodcockSpec { majorant: ray.majorant }.into())?),
+        ("jackknife (biased)", build(JackknifeSpec { teeth: half(rule) }.into())?),
+        ("naive (biased)", build(NaiveSpec { teeth: half(rule) }.into())?),
         (
             "progressive majorant (biased)",
-            beyond(BeyondSpec::ProgressiveMajorant { start: GUESS * ray.majorant })?,
+            build(ProgressiveMajorantSpec { start: GUESS * ray.majorant }.into())?,
         ),
     ])
 }

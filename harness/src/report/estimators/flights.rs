@@ -1,7 +1,7 @@
 //! The companion sampler of jittered ratio tracking against the exact law of distances, a hundred million times.
 
 use crate::Failure;
-use crate::plan::AnyProfile;
+use crate::field::AnyProfile;
 use crate::report::document::{Cell, Section, Table};
 use crate::report::run::Run;
 use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock};

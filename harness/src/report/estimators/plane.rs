@@ -2,11 +2,10 @@
 
 use crate::Failure;
 use crate::comparison::{Bout, Effort, Entrant, Facts, TestRay, entrants, facts_of, fight, pooled};
-use crate::plan::AnyProfile;
+use crate::field::{ExpressionSpec, ProfileKind};
 use crate::reference::Truth;
 use crate::report::document::{Axis, Cell, Content, HeatMap, Numbers, Panel, Section, Table};
 use crate::report::run::Run;
-use crate::spec::ProfileSpec;
 use fairflight_media::Tolerance;
 use fairflight_sources::derive_seed;
 use rayon::prelude::*;
@@ -79,8 +78,8 @@ pub(super) fn steps(run: &Run<'_>) -> u64 {
 fn point(shape: &Shape, transmittance: f64, tightness: f64) -> Result<TestRay, Failure> {
     let maximum = -transmittance.ln() / shape.integral;
     let sigma_t = format!("{maximum}*({})", shape.formula);
-    let spec = ProfileSpec::Expression { sigma_t, length: 1.0, majorant: None };
-    let profile = AnyProfile::build(&spec, &crate::plan::MediumLibrary::default())?;
+    let spec = ExpressionSpec { sigma_t, length: 1.0, majorant: None };
+    let profile = spec.build(&crate::field::MediumLibrary::default())?;
     let truth = Truth::of(&profile, Tolerance::TIGHT)?;
     // The rounding of the formula may lie above its exact maximum.
     Ok(TestRay { profile, truth, majorant: maximum * (1.0 + 1e-12) / tightness })

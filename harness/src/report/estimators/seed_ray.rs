@@ -2,17 +2,19 @@
 
 use crate::Failure;
 use crate::comparison::{Bout, Effort, TestRay, fight};
-use crate::plan::{AnyEstimator, AnyProfile, Field, FieldJob, KnownField};
+use crate::estimator::{
+    AdaptiveRatioSpec, CellsSpec, ControlSpec, DoubleParticleSpec, EstimatorSpec, HybridSpec, JackknifeSpec,
+    JitteredRatioSpec, NaiveSpec, NextFlightKind, NextFlightSpec, PSeriesSpec, Prepared, RegularSpec,
+    ResidualCellsSpec, RouletteSpec, SamplingSpec, TelescopingSpec, UnbiasedRayMarchingSpec, WoodcockSpec,
+};
+use crate::field::AnyProfile;
+use crate::field::{AnalyticCosineSpec, MediumKind};
 use crate::reference::Truth;
 use crate::report::document::{Cell, Section, Table};
 use crate::report::run::Run;
-use crate::spec::{
-    BeyondSpec, BoundsSpec, CellsSpec, CombKind, ControlSpec, EstimatorSpec, MediumKind, MediumSpec,
-    NextFlightKind, PSeriesKind, RouletteSpec, SamplingSpec, TeethSpec,
-};
 use fairflight_media::Tolerance;
 use fairflight_sources::derive_seed;
-use fairflight_transmittance::Roulette;
+use fairflight_transmittance::{CombShape, PSeriesVersion, Roulette};
 use glam::DVec3;
 
 /// The part of the report, for its seeds.
@@ -35,7 +37,7 @@ struct Figure {
 struct Row {
     name: &'static str,
     ours: bool,
-    estimator: AnyEstimator,
+    estimator: Prepared,
     figure: Option<Figure>,
     /// Where ours differs from the study's.
     remark: &'static str,
@@ -52,8 +54,8 @@ pub(super) struct SeedRay {
 
 /// The ray through the centre of szirmay-kalos-2017 eq. 21.
 pub(super) fn ray(run: &Run<'_>) -> Result<TestRay, Failure> {
-    let spec = MediumSpec { kind: MediumKind::AnalyticCosine { scale: 1.0 }, bounds: None };
-    let (medium, bounds) = run.media.build(&spec, "medium")?;
+    let spec = AnalyticCosineSpec { scale: 1.0, bounds: None };
+    let (medium, bounds) = spec.build(&run.media, "medium")?;
     let clip = bounds
         .clip(DVec3::ZERO, DVec3::Z, Some(LENGTH))
         .map_err(|error| Failure::refused(format!("profile: {error}")))?
@@ -171,50 +173,41 @@ fn agrees(figure: &Figure, bout: &Bout) -> bool {
 }
 
 /// The least and the greatest σ_t in equal cells, as a careful user finds them: at very many points, and a little beyond.
-struct Extremes;
-
-impl FieldJob for Extremes {
-    type Output = (Vec<f64>, Vec<f64>);
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
-        const POINTS: usize = 20_000;
-        /// Between two points eq. 21 moves by less than this.
-        const BEYOND: f64 = 1e-6;
-        (0..CELLS)
-            .map(|cell| {
-                let at = |i: usize| (cell as f64 + i as f64 / POINTS as f64) * field.length() / CELLS as f64;
-                let values = (0..=POINTS).map(|i| field.sigma_t(at(i).min(field.length())));
-                let (low, high) = values
-                    .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-                ((low - BEYOND).max(0.0), high + BEYOND)
-            })
-            .unzip()
-    }
+fn extremes(profile: &AnyProfile) -> (Vec<f64>, Vec<f64>) {
+    const POINTS: usize = 20_000;
+    /// Between two points eq. 21 moves by less than this.
+    const BEYOND: f64 = 1e-6;
+    let field = profile.field();
+    (0..CELLS)
+        .map(|cell| {
+            let at = |i: usize| (cell as f64 + i as f64 / POINTS as f64) * field.length() / CELLS as f64;
+            let values = (0..=POINTS).map(|i| field.sigma_t(at(i).min(field.length())));
+            let (low, high) =
+                values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+            ((low - BEYOND).max(0.0), high + BEYOND)
+        })
+        .unzip()
 }
 
 fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
     let mean = ray.truth.optical_thickness / LENGTH;
-    let (minorants, majorants) = ray.profile.with(Extremes);
+    let (minorants, majorants) = extremes(&ray.profile);
     let edges: Vec<f64> = (0..=CELLS).map(|i| i as f64 * LENGTH / CELLS as f64).collect();
     let cells = || CellsSpec::Given {
         edges: edges.clone(),
         minorants: minorants.clone(),
         majorants: majorants.clone(),
     };
-    let build = |spec: EstimatorSpec| AnyEstimator::build(&spec, &ray.profile);
-    let beyond = |spec: BeyondSpec| build(EstimatorSpec::Beyond(spec));
-    let double = |sampling, control| build(EstimatorSpec::DoubleParticle { sampling, control });
-    let explorers =
-        |count, sigma: f64| double(SamplingSpec::Constant(sigma), ControlSpec::Explorers { count });
-    let next_flight = |version| beyond(BeyondSpec::NextFlight { majorant: 1.0, version });
-    let series = |version| beyond(BeyondSpec::PSeries { version, pivot: Some(LENGTH) });
-    let comb = |teeth, comb, roulette, segments| {
-        let teeth = TeethSpec::Given(teeth);
-        beyond(BeyondSpec::UnbiasedRayMarching { teeth, comb, roulette, segments })
+    let build = |spec: EstimatorSpec| spec.kind().prepare(&ray.profile);
+    let double = |sigma_samp, control| build(DoubleParticleSpec::at(sigma_samp, control).into());
+    let explorers = |count, sigma_samp| double(sigma_samp, ControlSpec::through(count));
+    let next_flight = |version| build(NextFlightSpec { majorant: 1.0, version }.into());
+    let series = |version| build(PSeriesSpec { version, pivot: Some(LENGTH) }.into());
+    let comb = |teeth, shape, roulette, segments| {
+        let marching = UnbiasedRayMarchingSpec::of(shape, teeth);
+        build(UnbiasedRayMarchingSpec { roulette, segments, ..marching }.into())
     };
-    let usual = RouletteSpec::Stop(0.9);
+    let usual = RouletteSpec::USUAL;
     // The study tuned with the true variance, here that of the closed form: 2.87e-4 for order 3, 1.2e-4 for a fifth of the ray.
     let tuned = |k2: f64| RouletteSpec::Stop(Roulette::tuned(k2).stop_probability());
     let figure = |variance, rounding, lookups, samples| Some(Figure { variance, rounding, lookups, samples });
@@ -223,25 +216,27 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
     Ok(vec![
         published(
             "track length",
-            build(EstimatorSpec::Woodcock { majorant: 1.0 })?,
+            build(WoodcockSpec { majorant: 1.0 }.into())?,
             figure(29.4, 0.05, 5.21, 1e6),
         ),
-        published(
-            "ratio tracking",
-            double(SamplingSpec::Constant(1.0), ControlSpec::None)?,
-            figure(6.11, 0.005, 20.0, 1e6),
-        ),
+        published("ratio tracking", double(1.0, ControlSpec::none())?, figure(6.11, 0.005, 20.0, 1e6)),
         published(
             "ratio tracking, 20 majorants",
-            double(
-                SamplingSpec::PiecewiseConstant { edges: edges.clone(), values: majorants.clone() },
-                ControlSpec::None,
+            build(
+                DoubleParticleSpec {
+                    sigma_samp: SamplingSpec::PiecewiseConstant {
+                        edges: edges.clone(),
+                        values: majorants.clone(),
+                    },
+                    control: ControlSpec::none(),
+                }
+                .into(),
             )?,
             figure(12.3, 0.05, 6.7, 1e6),
         ),
         published(
             "residual ratio in 20 cells",
-            beyond(BeyondSpec::ResidualCells { cells: cells(), rate: 1.0 })?,
+            build(ResidualCellsSpec { cells: cells(), rate: 1.0 }.into())?,
             figure(6.54, 0.005, 6.0, 1e6),
         ),
         published("next-flight delta", next_flight(NextFlightKind::Delta)?, None),
@@ -250,20 +245,20 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
         published("bidirectional", next_flight(NextFlightKind::Bidirectional)?, None),
         published(
             "adaptive ratio",
-            beyond(BeyondSpec::AdaptiveRatio { majorant: 1.0, floor: 0.1 })?,
+            build(AdaptiveRatioSpec { majorant: 1.0, floor: 0.1 }.into())?,
             figure(6.1, 0.05, 13.9, 1e6),
         ),
-        published("p-series CMF", series(PSeriesKind::Cmf)?, figure(3.10, 0.005, 33.4, 1e6)),
-        published("p-series cumulative", series(PSeriesKind::Cumulative)?, figure(3.09, 0.005, 39.0, 1e6)),
-        published("p-series next-flight", series(PSeriesKind::NextFlight)?, None),
+        published("p-series CMF", series(PSeriesVersion::Cmf)?, figure(3.10, 0.005, 33.4, 1e6)),
+        published("p-series cumulative", series(PSeriesVersion::Cumulative)?, figure(3.09, 0.005, 39.0, 1e6)),
+        published("p-series next-flight", series(PSeriesVersion::NextFlight)?, None),
         published(
             "residual ratio, mean, rate 1",
-            double(SamplingSpec::Constant(1.0), ControlSpec::Constant(mean))?,
+            double(1.0, ControlSpec::constant(mean))?,
             figure(2.97, 0.005, 20.0, 1e6),
         ),
         published(
             "residual ratio, mean, rate 2",
-            double(SamplingSpec::Constant(2.0), ControlSpec::Constant(mean))?,
+            double(2.0, ControlSpec::constant(mean))?,
             figure(0.991, 0.0005, 40.0, 1e6),
         ),
         published("10 + 1 explorers, 10 points", explorers(11, 0.5)?, figure(7.31, 0.005, 21.0, 1e6)),
@@ -271,24 +266,24 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
         published("24 + 1 explorers, 8 points", explorers(25, 0.4)?, figure(0.0984, 5e-5, 33.0, 1e6)),
         ours(
             "jittered ratio, 0.5",
-            beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Majorant(1.0), epsilon: 0.5 })?,
+            build(JitteredRatioSpec::below(1.0, 0.5).into())?,
             figure(0.272, 0.0005, 51.9, f64::INFINITY),
         ),
         ours(
             "jittered ratio in 20 cells, 0.5",
-            beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Cells(cells()), epsilon: 0.5 })?,
+            build(JitteredRatioSpec::in_cells(cells(), 0.5).into())?,
             figure(0.269, 0.0005, 28.4, f64::INFINITY),
         ),
         ours(
             "jittered ratio in 20 cells, 0.25",
-            beyond(BeyondSpec::JitteredRatio { bounds: BoundsSpec::Cells(cells()), epsilon: 0.25 })?,
+            build(JitteredRatioSpec::in_cells(cells(), 0.25).into())?,
             figure(0.0619, 5e-5, 41.2, f64::INFINITY),
         ),
         Row {
             remark: "the study cuts off at level 4",
             ..published(
                 "telescoping",
-                beyond(BeyondSpec::Telescoping { teeth: 20, level_ratio: 0.9, endpoint_matching: false })?,
+                build(TelescopingSpec { teeth: 20, level_ratio: 0.9, endpoint_matching: false }.into())?,
                 figure(0.0487, 5e-5, 22.5, 1e6),
             )
         },
@@ -296,37 +291,37 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
             remark: "the study cuts off at level 4",
             ..ours(
                 "telescoping, matched",
-                beyond(BeyondSpec::Telescoping { teeth: 20, level_ratio: 0.9, endpoint_matching: true })?,
+                build(TelescopingSpec { teeth: 20, level_ratio: 0.9, endpoint_matching: true }.into())?,
                 figure(0.00110, 5e-6, 24.5, 1e6),
             )
         },
         published(
             "unbiased ray marching, 8 teeth",
-            comb(8, CombKind::Uniform, usual, 1)?,
+            comb(8, CombShape::Uniform, usual, 1)?,
             figure(6.7, 0.05, 10.6, 1e6),
         ),
         published(
             "unbiased ray marching, 15 teeth",
-            comb(15, CombKind::Uniform, usual, 1)?,
+            comb(15, CombShape::Uniform, usual, 1)?,
             figure(0.589, 0.0005, 19.8, 1e6),
         ),
         published(
             "unbiased ray marching, 25 teeth",
-            comb(25, CombKind::Uniform, usual, 1)?,
+            comb(25, CombShape::Uniform, usual, 1)?,
             figure(0.0271, 5e-5, 33.0, 1e6),
         ),
         published(
             "unbiased ray marching, 25 teeth, matched",
-            comb(25, CombKind::EndpointMatched, usual, 1)?,
+            comb(25, CombShape::EndpointMatched, usual, 1)?,
             figure(3.59e-4, 5e-7, 35.0, 1e6),
         ),
-        ours("periodised comb, 25 teeth", comb(25, CombKind::Periodised, usual, 1)?, None),
-        ours("Bernoulli comb 2, 25 teeth", comb(25, CombKind::Bernoulli2, usual, 1)?, None),
+        ours("periodised comb, 25 teeth", comb(25, CombShape::Periodised, usual, 1)?, None),
+        ours("Bernoulli comb 2, 25 teeth", comb(25, CombShape::Bernoulli2, usual, 1)?, None),
         Row {
             remark: "the study charges 6 look-ups to the ends",
             ..ours(
                 "Bernoulli comb 3, 25 teeth, tuned",
-                comb(25, CombKind::Bernoulli3, tuned(3.4e-4), 1)?,
+                comb(25, CombShape::Bernoulli3, tuned(3.4e-4), 1)?,
                 figure(3.51e-4, 5e-7, 31.7, 1e6),
             )
         },
@@ -334,24 +329,24 @@ fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
             remark: "the study tunes each segment by itself",
             ..ours(
                 "5 segments of 5 teeth, matched, tuned",
-                comb(5, CombKind::EndpointMatched, tuned(2.5e-4), 5)?,
+                comb(5, CombShape::EndpointMatched, tuned(2.5e-4), 5)?,
                 figure(1.49e-3, 5e-6, 31.5, 2.5e5),
             )
         },
-        ours("25 segments of one tooth, tuned", comb(1, CombKind::Uniform, tuned(0.05), 25)?, None),
+        ours("25 segments of one tooth, tuned", comb(1, CombShape::Uniform, tuned(0.05), 25)?, None),
         published(
             "jackknife, 2 x 8 (biased)",
-            beyond(BeyondSpec::Jackknife { teeth: 8 })?,
+            build(JackknifeSpec { teeth: 8 }.into())?,
             figure(0.74, 0.005, 16.0, 1e6),
         ),
         published(
             "jackknife, 2 x 25 (biased)",
-            beyond(BeyondSpec::Jackknife { teeth: 25 })?,
+            build(JackknifeSpec { teeth: 25 }.into())?,
             figure(0.0136, 5e-5, 50.0, 1e6),
         ),
-        published("naive, 8 teeth (biased)", beyond(BeyondSpec::Naive { teeth: 8 })?, None),
-        published("naive, 25 teeth (biased)", beyond(BeyondSpec::Naive { teeth: 25 })?, None),
-        published("regular tracking", beyond(BeyondSpec::Regular)?, None),
-        ours("hybrid", beyond(BeyondSpec::Hybrid { majorant: Some(1.0) })?, None),
+        published("naive, 8 teeth (biased)", build(NaiveSpec { teeth: 8 }.into())?, None),
+        published("naive, 25 teeth (biased)", build(NaiveSpec { teeth: 25 }.into())?, None),
+        published("regular tracking", build(RegularSpec {}.into())?, None),
+        ours("hybrid", build(HybridSpec { majorant: Some(1.0) }.into())?, None),
     ])
 }

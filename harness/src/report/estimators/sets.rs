@@ -2,10 +2,10 @@
 
 use crate::Failure;
 use crate::comparison::{Effort, RaySet, chords, entrants};
-use crate::plan::AnyProfile;
+use crate::field::AnyProfile;
+use crate::field::{AnalyticCosineSpec, MediumKind, PerlinSpec};
 use crate::report::document::Volume;
 use crate::report::run::Run;
-use crate::spec::{MediumKind, MediumSpec};
 use fairflight_media::{Bounds, PerlinParameters, PiecewiseConstant, Tolerance};
 use fairflight_sources::{Seeded, UniformSource};
 use glam::DVec3;
@@ -46,8 +46,8 @@ fn effort(run: &Run<'_>, samples: u64, closed: bool) -> Effort {
 }
 
 fn smooth(run: &Run<'_>) -> Result<Arena, Failure> {
-    let spec = MediumSpec { kind: MediumKind::AnalyticCosine { scale: 1.0 }, bounds: None };
-    let (medium, bounds) = run.media.build(&spec, "medium")?;
+    let spec = AnalyticCosineSpec { scale: 1.0, bounds: None };
+    let (medium, bounds) = spec.build(&run.media, "medium")?;
     let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 0))?;
     Ok(Arena {
         id: "smooth",
@@ -97,8 +97,8 @@ fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
     let radius = 10.0;
     let bounds = Bounds::sphere(DVec3::ZERO, radius)
         .map_err(|error| Failure::refused(format!("medium.bounds: {error}")))?;
-    let spec = MediumSpec { kind: MediumKind::Perlin(parameters), bounds: Some(bounds) };
-    let (medium, bounds) = run.media.build(&spec, "medium")?;
+    let spec = PerlinSpec::of(parameters, bounds);
+    let (medium, bounds) = spec.build(&run.media, "medium")?;
     let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 2))?;
     Ok(Arena {
         id: "perlin",
@@ -110,7 +110,7 @@ fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
 }
 
 fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
-    let (medium, bounds) = run.media.build(&volume.medium(), "medium")?;
+    let (medium, bounds) = volume.medium().kind().build(&run.media, "medium")?;
     let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 3))?;
     let majorant =
         medium.upper_bound().ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;

@@ -3,7 +3,7 @@
 use super::seed_ray;
 use crate::Failure;
 use crate::comparison::TestRay;
-use crate::plan::AnyProfile;
+use crate::field::AnyProfile;
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use crate::report::run::Run;
 use fairflight_collision::{Albedo, DoubleParticle};

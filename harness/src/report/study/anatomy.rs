@@ -1,7 +1,7 @@
 //! One ray taken apart: szirmay-kalos-2017 fig. 5.
 
 use super::laws::SharedLaws;
-use super::walk::{LookUp, Trace, WALK_EXPLORERS, distances, walker};
+use super::walk::{Trace, WALK_EXPLORERS, distances, looked_up, walker};
 use super::{Run, Study, Subject};
 use crate::Failure;
 use crate::report::result::Anatomy;
@@ -22,7 +22,7 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
     let s = distances(subject.facts.length, POINTS);
     Ok(Anatomy {
         sigma_samp,
-        sigma_t: subject.profile.with(LookUp(&s)),
+        sigma_t: looked_up(subject, &s),
         sigma_main: s.iter().map(|&s| control.sigma_t(s)).collect(),
         transmittance: s.iter().map(|&s| (-running.at(s)[0]).exp()).collect(),
         sampled: s

@@ -8,13 +8,12 @@ use super::series::{EXPLORERS, Entry, SPLITS};
 use super::sweep::log10_relative_mse;
 use super::{Effort, Run, Study, Subject};
 use crate::Failure;
-use crate::plan::{Estimator, EstimatorJob, Field, FieldJob, KnownField, Lawful, Plan};
+use crate::estimator::{EstimatorSpec, RayMarchingSpec};
+use crate::plan::Plan;
 use crate::reference::explain;
 use crate::report::result::{ConvergenceCurve, ConvergencePoint, Series, SweepCurve};
-use crate::spec::EstimatorSpec;
 use cpu_time::ThreadTime;
 use fairflight_collision::Albedo;
-use fairflight_media::Watched;
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{Offset, Theory};
 use rayon::prelude::*;
@@ -159,10 +158,10 @@ fn mean_point(
     seed: u64,
 ) -> Result<ConvergencePoint, Failure> {
     let plan = Plan::on(subject.profile.clone(), line.spec.clone(), estimates, seed)?;
-    let errors = subject.profile.with(Replicate { plan: &plan, subject, replicas })?;
+    let errors = replicate(&plan, subject, replicas)?;
     let n = estimates as f64;
     let relative_rmse = errors.square.sqrt();
-    let preparation = plan.estimator.preparation_lookups() as f64;
+    let preparation = plan.estimator.preparation_lookups as f64;
     // The 4th moment of a mean of n: 3 μ2²/n² + (μ4 − 3 μ2²)/n³.
     let [second, _, fourth, ..] = line.law.relative_central;
     let shape = 3.0 + (fourth / (second * second) - 3.0) / n;
@@ -187,9 +186,9 @@ fn march_point(
 ) -> Result<ConvergencePoint, Failure> {
     let law = marching::law(subject, offset, steps)?;
     // A deterministic rule is the same in every replica; it is run often enough to be timed.
-    let spec = EstimatorSpec::RayMarching { steps, offset };
+    let spec = RayMarchingSpec::at(steps, offset).into();
     let plan = Plan::on(subject.profile.clone(), spec, 1, seed)?;
-    let errors = subject.profile.with(Replicate { plan: &plan, subject, replicas: MARCHES })?;
+    let errors = replicate(&plan, subject, MARCHES)?;
     let relative_rmse = errors.square.sqrt();
     let shape = if offset == Offset::Fixed { 1.0 } else { errors.fourth / (errors.square * errors.square) };
     Ok(ConvergencePoint {
@@ -211,47 +210,22 @@ struct Errors {
     seconds: f64,
 }
 
-#[derive(Clone, Copy)]
-struct Replicate<'a> {
-    plan: &'a Plan,
-    subject: &'a Subject,
-    replicas: u64,
-}
-
-impl FieldJob for Replicate<'_> {
-    type Output = Result<Errors, Failure>;
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
-        self.plan.estimator.with(field, self)?
+fn replicate(plan: &Plan, subject: &Subject, replicas: u64) -> Result<Errors, Failure> {
+    let unit = subject.truth.transmittance() * plan.samples as f64;
+    let mut estimates = vec![0.0; plan.samples as usize];
+    let (mut square, mut fourth) = (0.0, 0.0);
+    let clock = ThreadTime::now();
+    for replica in 0..replicas {
+        let drawn = plan.estimator.trial.draw(&mut Seeded::for_batch(plan.seed, replica), &mut estimates);
+        drawn.map_err(|violation| explain(&subject.profile, &plan.estimator, &subject.truth, violation))?;
+        let error = (estimates.iter().sum::<f64>() / unit - 1.0).powi(2);
+        square += error;
+        fourth += error * error;
     }
-}
-
-impl EstimatorJob for Replicate<'_> {
-    type Output = Result<Errors, Failure>;
-    fn run<G: Field, E: Estimator<G>>(self, field: G, estimator: E) -> Self::Output {
-        let Self { plan, subject, replicas } = self;
-        let upper_bound = subject.truth.knowledge.upper_bound.unwrap_or(f64::INFINITY);
-        let watched = Watched::new(field, Lawful { field, estimator, upper_bound });
-        let unit = subject.truth.transmittance() * plan.samples as f64;
-        let (mut square, mut fourth) = (0.0, 0.0);
-        let clock = ThreadTime::now();
-        for replica in 0..replicas {
-            let mut source = Seeded::for_batch(plan.seed, replica);
-            let sum: f64 = (0..plan.samples).map(|_| estimator.estimate(&watched, &mut source)).sum();
-            let error = (sum / unit - 1.0).powi(2);
-            square += error;
-            fourth += error * error;
-        }
-        let seconds = clock.elapsed().as_secs_f64();
-        if let Some(violation) = watched.violation() {
-            return Err(explain(&subject.profile, &plan.estimator, &subject.truth, violation));
-        }
-        if !square.is_finite() {
-            return Err(Failure::refused(format!("report: {}: an estimate is not finite", subject.id)));
-        }
-        let replicas = replicas as f64;
-        Ok(Errors { square: square / replicas, fourth: fourth / replicas, seconds })
+    let seconds = clock.elapsed().as_secs_f64();
+    if !square.is_finite() {
+        return Err(Failure::refused(format!("report: {}: an estimate is not finite", subject.id)));
     }
+    let replicas = replicas as f64;
+    Ok(Errors { square: square / replicas, fourth: fourth / replicas, seconds })
 }

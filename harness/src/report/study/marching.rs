@@ -2,7 +2,6 @@
 
 use super::Subject;
 use crate::Failure;
-use crate::plan::{Field, FieldJob, KnownField};
 use fairflight_media::{Tolerance, adaptive_integral};
 use fairflight_sources::Scripted;
 use fairflight_transmittance::{Offset, RayMarching, TransmittanceEstimator};
@@ -22,61 +21,41 @@ pub(super) struct MarchingLaw {
 /// If there are no steps.
 pub(super) fn law(subject: &Subject, offset: Offset, steps: u32) -> Result<MarchingLaw, Failure> {
     let marching = RayMarching::new(steps, offset).map_err(Failure::refused)?;
-    Ok(subject.profile.with(Law { subject, marching, offset, steps }))
-}
-
-struct Law<'a> {
-    subject: &'a Subject,
-    marching: RayMarching,
-    offset: Offset,
-    steps: u32,
+    let (field, tau) = (subject.profile.field(), subject.truth.optical_thickness);
+    let error = |offset: f64| -marching.estimate(&field, &mut Scripted::new([offset])).ln() - tau;
+    if offset == Offset::Fixed {
+        let relative_bias = (-error(0.5)).exp_m1().abs();
+        return Ok(MarchingLaw { relative_bias, relative_rmse: relative_bias });
+    }
+    let tolerance =
+        Tolerance { absolute: 1e-15, relative: 1e-3, most_panels: (LOOKUPS / steps).clamp(1, 64) as usize };
+    let [bias, square] = adaptive_integral(1.0, &[], tolerance, |offset| {
+        let delta = error(offset);
+        let relative = (-delta).exp_m1();
+        [relative + delta, relative * relative]
+    })
+    .value;
+    Ok(MarchingLaw { relative_bias: bias, relative_rmse: square.sqrt() })
 }
 
 /// Panels of the integral over the offset: fewer for more steps, so that every point costs about as much.
 const LOOKUPS: u32 = 1 << 11;
 
-impl FieldJob for Law<'_> {
-    type Output = MarchingLaw;
-    fn run<F: KnownField>(self, field: &F) -> MarchingLaw
-    where
-        for<'a> &'a F: Field,
-    {
-        let tau = self.subject.truth.optical_thickness;
-        let error = |offset: f64| -self.marching.estimate(field, &mut Scripted::new([offset])).ln() - tau;
-        if self.offset == Offset::Fixed {
-            let relative_bias = (-error(0.5)).exp_m1().abs();
-            return MarchingLaw { relative_bias, relative_rmse: relative_bias };
-        }
-        let tolerance = Tolerance {
-            absolute: 1e-15,
-            relative: 1e-3,
-            most_panels: (LOOKUPS / self.steps).clamp(1, 64) as usize,
-        };
-        let [bias, square] = adaptive_integral(1.0, &[], tolerance, |offset| {
-            let delta = error(offset);
-            let relative = (-delta).exp_m1();
-            [relative + delta, relative * relative]
-        })
-        .value;
-        MarchingLaw { relative_bias: bias, relative_rmse: square.sqrt() }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::MediumLibrary;
+    use crate::estimator::RayMarchingSpec;
+    use crate::field::MediumLibrary;
     use crate::plan::Plan;
     use crate::report::study::laws::SharedLaws;
     use crate::report::study::subject;
-    use crate::spec::EstimatorSpec;
 
     #[test]
     fn it_agrees_with_the_estimators_own_theory() {
         let subject = subject::analytic(&MediumLibrary::default()).unwrap();
         let laws = SharedLaws::of(&subject);
         for (offset, steps) in [(Offset::Fixed, 8), (Offset::Jittered, 8), (Offset::Jittered, 20)] {
-            let spec = EstimatorSpec::RayMarching { steps, offset };
+            let spec = RayMarchingSpec::at(steps, offset).into();
             let plan = Plan::on(subject.profile.clone(), spec, 1, 1).unwrap();
             let theory = laws.law(&subject, &plan.estimator).unwrap().unwrap().theory;
             let found = law(&subject, offset, steps).unwrap();

@@ -23,7 +23,7 @@ mod walk;
 
 pub use options::Options;
 
-use crate::plan::MediumLibrary;
+use crate::field::MediumLibrary;
 use crate::report::result::{MediumReport, Report};
 use crate::{Environment, Failure};
 use effort::Effort;

@@ -1,13 +1,16 @@
 //! The estimators that are swept: all parameters but the sampling extinction.
 
 use super::Subject;
+use crate::estimator::{
+    ControlSpec, DoubleParticleSpec, EstimatorSpec, LineIntegralSpec, RayMarchingSpec, SamplingSpec,
+    SingleParticleSpec, WoodcockSpec,
+};
 use crate::report::result::Series;
-use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
 use fairflight_collision::{Albedo, Version};
 use fairflight_transmittance::Offset;
 
 /// Explorer points of the controls.
-pub(super) const EXPLORERS: usize = 16;
+pub(super) const EXPLORERS: u32 = 16;
 /// Flights per set of the line integral.
 pub(super) const SPLITS: u32 = 8;
 /// The albedos of the single particle model: it enters the variance of transmittance too.
@@ -44,27 +47,28 @@ pub(super) fn all() -> Vec<Entry> {
 impl Entry {
     /// The estimator at one sampling extinction \[1/length\]. Ray marching takes as many steps as tracking takes look-ups.
     pub(super) fn at(&self, subject: &Subject, sigma_samp: f64) -> EstimatorSpec {
-        let sampling = SamplingSpec::Constant(sigma_samp);
-        let double = |control| EstimatorSpec::DoubleParticle { sampling: sampling.clone(), control };
-        let single = |version| EstimatorSpec::SingleParticle {
-            version,
-            albedo: self.albedo.unwrap_or_default(),
-            sampling: sampling.clone(),
-            control: ControlSpec::None,
+        let double = |control| DoubleParticleSpec::at(sigma_samp, control).into();
+        let single = |version| {
+            EstimatorSpec::from(SingleParticleSpec {
+                version,
+                albedo: self.albedo.unwrap_or_default(),
+                sigma_samp: SamplingSpec::Constant(sigma_samp),
+                control: ControlSpec::none(),
+            })
         };
         let marching = |offset| {
             let steps = (sigma_samp * subject.facts.length).round().max(1.0) as u32;
-            EstimatorSpec::RayMarching { steps, offset }
+            RayMarchingSpec::at(steps, offset).into()
         };
         match self.series {
-            Series::Woodcock => EstimatorSpec::Woodcock { majorant: sigma_samp },
-            Series::DoubleParticle => double(ControlSpec::None),
-            Series::DoubleParticleMean => double(ControlSpec::Constant(subject.facts.mean)),
-            Series::DoubleParticleExplorers => double(ControlSpec::Explorers { count: EXPLORERS }),
+            Series::Woodcock => WoodcockSpec { majorant: sigma_samp }.into(),
+            Series::DoubleParticle => double(ControlSpec::none()),
+            Series::DoubleParticleMean => double(ControlSpec::constant(subject.facts.mean)),
+            Series::DoubleParticleExplorers => double(ControlSpec::through(EXPLORERS)),
             Series::Terminating => single(Version::Terminating),
             Series::NonTerminating => single(Version::NonTerminating),
             Series::Adaptive => single(Version::Adaptive),
-            Series::LineIntegral => EstimatorSpec::LineIntegral { majorant: sigma_samp, splits: SPLITS },
+            Series::LineIntegral => LineIntegralSpec { majorant: sigma_samp, splits: SPLITS }.into(),
             Series::RayMarching => marching(Offset::Fixed),
             Series::JitteredRayMarching => marching(Offset::Jittered),
         }

@@ -1,12 +1,12 @@
 //! A medium and one ray through it: what the curves of the report are about.
 
-use super::maximum::Maximum;
+use super::maximum::maximum;
 use crate::Failure;
-use crate::plan::{AnyMedium, AnyProfile, MediumLibrary};
+use crate::field::{AnalyticCosineSpec, MediumKind, PerlinSpec};
+use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::reference::Truth;
 use crate::report::document::Volume;
 use crate::report::result::RayFacts;
-use crate::spec::{MediumKind, MediumSpec};
 use fairflight_media::{AnalyticCosine, Bounds, PerlinParameters, Tolerance};
 use glam::{DVec3, dvec3};
 
@@ -44,7 +44,7 @@ fn perlin_parameters() -> PerlinParameters {
 }
 
 pub(super) fn analytic(library: &MediumLibrary) -> Result<Subject, Failure> {
-    let spec = MediumSpec { kind: MediumKind::AnalyticCosine { scale: 1.0 }, bounds: None };
+    let spec = AnalyticCosineSpec { scale: 1.0, bounds: None };
     Subject::new(
         Names {
             id: "eq21",
@@ -63,8 +63,7 @@ pub(super) fn analytic(library: &MediumLibrary) -> Result<Subject, Failure> {
 
 pub(super) fn perlin(library: &MediumLibrary) -> Result<Subject, Failure> {
     let parameters = perlin_parameters();
-    let spec =
-        MediumSpec { kind: MediumKind::Perlin(parameters), bounds: Some(AnalyticCosine::default_bounds()) };
+    let spec = PerlinSpec::of(parameters, AnalyticCosine::default_bounds());
     let PerlinParameters { octaves, frequency, lacunarity, gain, scale, offset, seed } = parameters;
     Subject::new(
         Names {
@@ -101,7 +100,7 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
             ),
         },
         Ranking { index: 2, lookup_nanoseconds: 60.0, walk_sampling: None },
-        &volume.medium(),
+        volume.medium().kind(),
         library,
         through_the_middle,
     )
@@ -151,19 +150,19 @@ impl Subject {
     fn new(
         names: Names,
         ranking: Ranking,
-        spec: &MediumSpec,
+        spec: &dyn MediumKind,
         library: &MediumLibrary,
         ray: impl Fn(&Bounds) -> (DVec3, DVec3),
     ) -> Result<Self, Failure> {
         let Names { id, title, description } = names;
         let Ranking { index, lookup_nanoseconds, walk_sampling } = ranking;
-        let (medium, bounds) = library.build(spec, "profile.medium")?;
+        let (medium, bounds) = spec.build(library, "profile.medium")?;
         let (origin, direction) = ray(&bounds);
         let clip = bounds.clip(origin, direction, None).map_err(|error| in_subject(id, error))?;
         let clip = clip.ok_or_else(|| in_subject(id, "the studied ray misses the medium"))?;
         let profile = AnyProfile::ray(&medium, &clip)?;
         let truth = Truth::of(&profile, Tolerance::TIGHT)?;
-        let maximum = profile.with(Maximum { observed: truth.observed.1 });
+        let maximum = maximum(&profile, truth.observed.1);
         let length = clip.length;
         let transmittance = truth.transmittance();
         if !(maximum > 0.0 && length > 0.0) {

@@ -88,7 +88,7 @@ fn point(
     let mut plan = Plan::on(subject.profile.clone(), spec, 0, seed.unwrap_or_default())?;
     plan.counted = COUNTED;
     let Some(prediction) = laws.law(subject, &plan.estimator)? else { return Ok(undefined) };
-    let lookups = prediction.theory.lookups + plan.estimator.preparation_lookups() as f64;
+    let lookups = prediction.theory.lookups + plan.estimator.preparation_lookups as f64;
     let log10_mse = log10_relative_mse(&prediction.theory);
     let measured = match seed {
         None => None,
@@ -170,7 +170,7 @@ fn measured(
         mean_z: verdict.mean_z,
         variance_z: verdict.variance_z,
         sound: verdict.sound,
-        lookups: lookups_per_sample + plan.estimator.preparation_lookups() as f64,
+        lookups: lookups_per_sample + plan.estimator.preparation_lookups as f64,
         nanoseconds: 1e9 * per_estimate,
         log10_efficiency_per_second: Some(-log10_mse - per_estimate.log10()).filter(|x| x.is_finite()),
     })
@@ -199,7 +199,7 @@ fn closed_moments(theory: &Theory) -> ClosedMoments {
 mod tests {
     use super::*;
     use crate::experiment::analyse;
-    use crate::plan::MediumLibrary;
+    use crate::field::MediumLibrary;
     use crate::reference::predict;
     use crate::report::result::Series;
     use crate::report::study::subject;

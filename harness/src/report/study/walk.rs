@@ -2,7 +2,7 @@
 
 use super::Subject;
 use crate::Failure;
-use crate::plan::{Field, FieldJob, KnownField};
+use crate::field::{Field, FieldJob, KnownField};
 use fairflight_collision::DoubleParticle;
 use fairflight_media::Constant;
 use fairflight_sources::UniformSource;
@@ -19,38 +19,16 @@ pub(super) type Walker = Tracking<DoubleParticle, Explorers, Constant>;
 /// # Errors
 /// If σ_samp is not lawful.
 pub(super) fn walker(subject: &Subject, explorers: usize, sigma_samp: f64) -> Result<Walker, Failure> {
-    subject.profile.with(Prepare { explorers, sigma_samp })
+    let field = subject.profile.field();
+    let control = Explorers::through(&field, explorers).map_err(Failure::refused)?;
+    let sampling = Constant::new(sigma_samp, field.length()).map_err(Failure::refused)?;
+    let model = DoubleParticle { albedo: fairflight_collision::Albedo::default() };
+    Ok(Tracking::new(model, control, sampling))
 }
 
-struct Prepare {
-    explorers: usize,
-    sigma_samp: f64,
-}
-
-impl FieldJob for Prepare {
-    type Output = Result<Walker, Failure>;
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
-        let control = Explorers::through(field, self.explorers).map_err(Failure::refused)?;
-        let sampling = Constant::new(self.sigma_samp, field.length()).map_err(Failure::refused)?;
-        let model = DoubleParticle { albedo: fairflight_collision::Albedo::default() };
-        Ok(Tracking::new(model, control, sampling))
-    }
-}
-
-/// Evaluates σ_t of a subject's ray at many distances.
-pub(super) struct LookUp<'a>(pub(super) &'a [f64]);
-
-impl FieldJob for LookUp<'_> {
-    type Output = Vec<f64>;
-    fn run<F: KnownField>(self, field: &F) -> Vec<f64>
-    where
-        for<'a> &'a F: Field,
-    {
-        self.0.iter().map(|&s| field.sigma_t(s)).collect()
-    }
+/// σ_t of a subject's ray at many distances.
+pub(super) fn looked_up(subject: &Subject, distances: &[f64]) -> Vec<f64> {
+    distances.iter().map(|&s| subject.profile.field().sigma_t(s)).collect()
 }
 
 /// `walks` walks from one source: their interaction points.

@@ -2,7 +2,8 @@
 
 use super::scenes::{self, BOUND, Choice, lights};
 use crate::Failure;
-use crate::plan::{AnyMedium, Spectra};
+use crate::field::AnyMedium;
+use crate::plan::Spectra;
 use crate::report::document::{Cell, Section, Table};
 use crate::report::replicas::Measured;
 use crate::report::run::Run;

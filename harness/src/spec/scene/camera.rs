@@ -1,7 +1,7 @@
 //! The camera of a scene.
 
 use crate::Failure;
-use crate::spec::Node;
+use crate::reader::Node;
 use fairflight_scene::{Camera, SceneError};
 
 /// A wider or higher image is a slip of the keyboard.

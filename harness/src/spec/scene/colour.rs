@@ -1,7 +1,7 @@
 //! A number, or one per channel.
 
 use crate::Failure;
-use crate::spec::Node;
+use crate::reader::Node;
 
 /// A gray or coloured quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]

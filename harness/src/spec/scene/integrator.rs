@@ -1,9 +1,10 @@
 //! What estimates a pixel.
 
-use super::{PathTracerSpec, RayEstimatorSpec, VplSpec};
+use super::{PathTracerSpec, VplSpec};
 use crate::Failure;
-use crate::spec::estimator::{one_of, read_version};
-use crate::spec::{Node, Object};
+use crate::estimator::{EstimatorSpec, VersionWord};
+use crate::reader::rule::one_of;
+use crate::reader::{Node, Object, Rule};
 use fairflight_collision::Version;
 use fairflight_paths::{Grid, Heuristic};
 use fairflight_transmittance::Starts;
@@ -14,7 +15,7 @@ pub enum IntegratorSpec {
     /// The background seen through the medium; no scattering.
     Transmittance {
         /// Of the transmittance.
-        estimator: RayEstimatorSpec,
+        estimator: EstimatorSpec,
     },
     /// szirmay-kalos-2017 section 4.1.
     ParticleTracer(TracerSpec),
@@ -43,7 +44,7 @@ pub struct SingleScatteringSpec {
     /// Where on the ray the scattering point is chosen.
     pub sampling: Strategy,
     /// Of the transmittance along the camera's ray.
-    pub estimator: RayEstimatorSpec,
+    pub estimator: EstimatorSpec,
     /// Scattering points per ray, light and technique.
     pub samples_per_ray: u32,
     /// How techniques are combined.
@@ -51,7 +52,7 @@ pub struct SingleScatteringSpec {
     /// Of the flights of `line_integral`.
     pub starts: Starts,
     /// Of the transmittance to the lights; without it, the camera ray's.
-    pub shadow: Option<RayEstimatorSpec>,
+    pub shadow: Option<EstimatorSpec>,
     /// How many neighbouring pixels share one fitted control.
     pub shared_explorers: u32,
 }
@@ -195,7 +196,7 @@ impl IntegratorSpec {
     pub fn read(node: &Node<'_>) -> Result<Self, Failure> {
         let object = node.object()?;
         let kind = object.required("kind")?;
-        let estimator = || RayEstimatorSpec::read(&object.required("estimator")?);
+        let estimator = || EstimatorSpec::read_for_all_rays(&object.required("estimator")?);
         let integrator = match kind.text()? {
             "transmittance" => Self::Transmittance { estimator: estimator()? },
             "particle_tracer" => Self::ParticleTracer(TracerSpec::take_from(&object)?),
@@ -217,7 +218,10 @@ impl IntegratorSpec {
                     "heuristic",
                     &[("balance", Heuristic::Balance), ("power", Heuristic::Power)],
                 )?,
-                shadow: object.optional("shadow").map(|node| RayEstimatorSpec::read(&node)).transpose()?,
+                shadow: object
+                    .optional("shadow")
+                    .map(|node| EstimatorSpec::read_for_all_rays(&node))
+                    .transpose()?,
                 shared_explorers: object
                     .optional("shared_explorers")
                     .map_or(Ok(1), |node| node.integer(1, MOST))? as u32,
@@ -242,7 +246,7 @@ impl TracerSpec {
 
 impl WalkSpec {
     fn take_from(object: &Object<'_>) -> Result<Self, Failure> {
-        let version = read_version(&object.required("version")?)?;
+        let version = VersionWord::read(&object.required("version")?)?;
         Self::take_rest(object, version, SamplingFieldSpec::read(&object.required("sigma_samp")?)?)
     }
 
@@ -267,7 +271,7 @@ impl WalkSpec {
 impl WalkSpec {
     /// The walk of an integrator that knows surfaces, the same where version and sampling extinction may be left out: non-terminating, at the greatest extinction of the medium.
     pub(super) fn take_with_defaults(object: &Object<'_>) -> Result<Self, Failure> {
-        let version = object.optional("version").map(|node| read_version(&node));
+        let version = object.optional("version").map(|node| VersionWord::read(&node));
         let sampling = object.optional("sigma_samp").map(|node| SamplingFieldSpec::read(&node));
         let version = version.unwrap_or(Ok(Version::NonTerminating))?;
         Self::take_rest(object, version, sampling.unwrap_or(Ok(SamplingFieldSpec::FromMedium))?)

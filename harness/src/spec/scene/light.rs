@@ -2,7 +2,7 @@
 
 use super::ColourSpec;
 use crate::Failure;
-use crate::spec::Node;
+use crate::reader::Node;
 use glam::DVec3;
 use std::path::PathBuf;
 

@@ -4,7 +4,6 @@ mod camera;
 mod colour;
 mod integrator;
 mod light;
-mod ray_estimator;
 mod surface;
 mod virtual_lights;
 mod volume;
@@ -15,13 +14,12 @@ pub use integrator::{
     WalkSpec,
 };
 pub use light::LightSpec;
-pub use ray_estimator::RayEstimatorSpec;
 pub use surface::{MaterialSpec, ShapeSpec, SurfaceSpec};
 pub use virtual_lights::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 pub use volume::{PhaseSpec, VolumeSpec};
 
-use super::Node;
 use crate::Failure;
+use crate::reader::Node;
 use fairflight_scene::Camera;
 use serde_json::Value;
 

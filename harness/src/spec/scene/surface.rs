@@ -2,7 +2,7 @@
 
 use super::ColourSpec;
 use crate::Failure;
-use crate::spec::Node;
+use crate::reader::Node;
 use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{SceneError, Shape};
 use glam::DVec3;

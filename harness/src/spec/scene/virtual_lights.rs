@@ -1,9 +1,10 @@
 //! Path tracing among surfaces, and virtual point lights.
 
+use super::WalkSpec;
 use super::integrator::{named, named_or};
-use super::{RayEstimatorSpec, WalkSpec};
 use crate::Failure;
-use crate::spec::{Node, Object};
+use crate::estimator::EstimatorSpec;
+use crate::reader::{Node, Object};
 use fairflight_compensation::{CompensationOptions, Placement, Strategy, TransmittanceUse, Visibility};
 use fairflight_paths::Heuristic;
 
@@ -13,7 +14,7 @@ pub struct TransportSpec {
     /// How paths fly through the medium.
     pub walk: WalkSpec,
     /// Transmittance of connections; by default in closed form in a homogeneous medium, else ratio tracking.
-    pub estimator: Option<RayEstimatorSpec>,
+    pub estimator: Option<EstimatorSpec>,
     /// How next-event estimation is weighted against scattering.
     pub heuristic: Heuristic,
 }
@@ -88,7 +89,10 @@ impl TransportSpec {
             [("balance", Heuristic::Balance), ("power", Heuristic::Power), ("maximum", Heuristic::Maximum)];
         Ok(Self {
             walk: WalkSpec::take_with_defaults(object)?,
-            estimator: object.optional("estimator").map(|node| RayEstimatorSpec::read(&node)).transpose()?,
+            estimator: object
+                .optional("estimator")
+                .map(|node| EstimatorSpec::read_for_all_rays(&node))
+                .transpose()?,
             heuristic: named_or(object, "heuristic", &heuristics)?,
         })
     }
@@ -145,7 +149,7 @@ impl VplSpec {
 impl VplSpec {
     /// What is biased by design, if anything is; `is_biased` tells of an estimator of transmittance.
     #[must_use]
-    pub fn biased_by_design(&self, is_biased: impl Fn(&RayEstimatorSpec) -> bool) -> Option<&'static str> {
+    pub fn biased_by_design(&self, is_biased: impl Fn(&EstimatorSpec) -> bool) -> Option<&'static str> {
         if self.component != ComponentSpec::All {
             Some("component: a part of the light only")
         } else if self.transport.estimator.as_ref().is_some_and(is_biased) {

@@ -2,7 +2,8 @@
 
 use super::ColourSpec;
 use crate::Failure;
-use crate::spec::{MediumSpec, Node};
+use crate::field::MediumSpec;
+use crate::reader::Node;
 
 /// A medium that scatters, as given.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +51,7 @@ impl VolumeSpec {
     /// If a key is missing, unknown or of the wrong kind.
     pub fn read(node: &Node<'_>, allow_gain: bool) -> Result<Self, Failure> {
         let object = node.object()?;
-        let medium = MediumSpec::take_from(&object)?;
+        let medium = MediumSpec::take(&object)?;
         let most = if allow_gain { f64::INFINITY } else { 1.0 };
         let albedo = ColourSpec::read(&object.required("albedo")?, most)?;
         let phase = PhaseSpec::read(&object.required("phase")?)?;

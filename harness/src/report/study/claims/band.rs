@@ -7,7 +7,7 @@
 
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
-use crate::plan::{Field, FieldJob, KnownField};
+use crate::field::{Field, FieldJob, KnownField};
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::study::Subject;
 use crate::report::study::laws::SharedLaws;

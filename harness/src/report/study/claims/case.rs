@@ -1,12 +1,13 @@
 //! One measured variance beside its closed form.
 
 use crate::Failure;
+use crate::estimator::EstimatorSpec;
 use crate::experiment::{compare, measure_plan};
-use crate::plan::{AnyProfile, Plan};
+use crate::field::AnyProfile;
+use crate::plan::Plan;
 use crate::reference::{Truth, predict};
 use crate::report::study::effort::{COUNTED, samples_to_test};
 use crate::report::study::sweep::samples_needed;
-use crate::spec::EstimatorSpec;
 use fairflight_media::{Constant, Tolerance};
 use fairflight_stats::DEFAULT_ALPHA;
 
@@ -55,7 +56,7 @@ impl Case {
             closed: prediction.theory.log_relative_variance.exp(),
             measured: relative.sample_variance().unwrap_or(f64::NAN),
             error: error.or_else(|| relative.variance_standard_error()).unwrap_or(f64::NAN),
-            lookups: prediction.theory.lookups + plan.estimator.preparation_lookups() as f64,
+            lookups: prediction.theory.lookups + plan.estimator.preparation_lookups as f64,
             samples: plan.samples,
             testable: comparison.verdict.variance_p.is_some(),
             sound: comparison.verdict.sound,

@@ -7,11 +7,11 @@
 use super::case::Case;
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
+use crate::estimator::{ControlSpec, DoubleParticleSpec, EstimatorSpec};
 use crate::plan::Plan;
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::study::Subject;
 use crate::report::study::laws::SharedLaws;
-use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
 use rayon::prelude::*;
 
 const FACTORS: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
@@ -68,8 +68,7 @@ pub(super) fn s8(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
 }
 
 fn spec(sigma_samp: f64, control: f64) -> EstimatorSpec {
-    let sampling = SamplingSpec::Constant(sigma_samp);
-    EstimatorSpec::DoubleParticle { sampling, control: ControlSpec::Constant(control) }
+    DoubleParticleSpec::at(sigma_samp, ControlSpec::constant(control)).into()
 }
 
 /// The constant control of the least closed-form variance: golden-section search of ln(Var/T²) from 0 to 4 times the mean.

@@ -9,10 +9,10 @@
 use super::case::{Case, homogeneous, with_error};
 use super::{Evidence, claim};
 use crate::Failure;
-use crate::plan::AnyProfile;
+use crate::estimator::{ControlSpec, DoubleParticleSpec};
+use crate::field::AnyProfile;
 use crate::report::result::{Claim, ClaimVerdict, Series};
 use crate::report::study::series::EXPLORERS;
-use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
 use fairflight_media::PiecewiseLinear;
 use rayon::prelude::*;
 
@@ -23,13 +23,13 @@ pub(super) fn s1(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     let ramp = PiecewiseLinear::new(vec![0.0, 2.0], vec![0.0, 1.0]).map_err(Failure::refused)?;
     let ramp = (AnyProfile::PiecewiseLinear(ramp), 5.0);
     let majorant = subject.majorant;
-    let constant = ControlSpec::Constant;
+    let constant = ControlSpec::constant;
     let cases = [
-        ("eq. 21, no control, below the maximum", &seed_ray, 0.6 * majorant, ControlSpec::None),
-        ("eq. 21, no control, at the maximum", &seed_ray, majorant, ControlSpec::None),
-        ("eq. 21, explorers", &seed_ray, 3.0 * majorant, ControlSpec::Explorers { count: EXPLORERS }),
+        ("eq. 21, no control, below the maximum", &seed_ray, 0.6 * majorant, ControlSpec::none()),
+        ("eq. 21, no control, at the maximum", &seed_ray, majorant, ControlSpec::none()),
+        ("eq. 21, explorers", &seed_ray, 3.0 * majorant, ControlSpec::through(EXPLORERS)),
         ("ramp, control = mean (differences of both signs)", &ramp, 2.0, constant(0.5)),
-        ("homogeneous, no control, r = 2", &slab, 0.5, ControlSpec::None),
+        ("homogeneous, no control, r = 2", &slab, 0.5, ControlSpec::none()),
         ("homogeneous, control below sigma_t, r = 1.25", &slab, 0.4, constant(0.5)),
         ("homogeneous, control above sigma_t, r = -0.125 (negative everywhere)", &slab, 2.0, constant(1.25)),
     ];
@@ -38,8 +38,7 @@ pub(super) fn s1(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
         .par_iter()
         .enumerate()
         .map(|(i, (_, (profile, nanoseconds), sigma_samp, control))| {
-            let sampling = SamplingSpec::Constant(*sigma_samp);
-            let spec = EstimatorSpec::DoubleParticle { sampling, control: control.clone() };
+            let spec = DoubleParticleSpec::at(*sigma_samp, control.clone()).into();
             Case::measure(profile, spec, evidence.seed(1, i as u64), seconds, *nanoseconds)
         })
         .collect();

@@ -7,8 +7,8 @@
 use super::case::{Case, closed, with_error};
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
+use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
 use crate::report::result::{Claim, ClaimVerdict, Series, SweepMeasurement, SweepPoint};
-use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
 use fairflight_collision::{Albedo, Version};
 use rayon::prelude::*;
 
@@ -102,12 +102,13 @@ pub(super) fn s3(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     let factors = [1.0, 8.0, 64.0];
     let limit = 512.0;
     let spec = |albedo: f64, factor: f64| -> Result<EstimatorSpec, Failure> {
-        Ok(EstimatorSpec::SingleParticle {
+        Ok(SingleParticleSpec {
             version: Version::NonTerminating,
             albedo: Albedo::new(albedo).map_err(Failure::refused)?,
-            sampling: SamplingSpec::Constant(subject.majorant * factor),
-            control: ControlSpec::None,
-        })
+            sigma_samp: SamplingSpec::Constant(subject.majorant * factor),
+            control: ControlSpec::none(),
+        }
+        .into())
     };
     let tasks: Vec<(usize, usize)> =
         (0..albedos.len()).flat_map(|a| (0..factors.len()).map(move |f| (a, f))).collect();

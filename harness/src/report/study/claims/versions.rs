@@ -8,10 +8,10 @@
 use super::case::{Case, homogeneous};
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
+use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
 use crate::plan::Plan;
 use crate::reference::{Truth, predict};
 use crate::report::result::{Claim, ClaimVerdict};
-use crate::spec::{ControlSpec, EstimatorSpec, SamplingSpec};
 use fairflight_collision::{Albedo, Version};
 use fairflight_media::Tolerance;
 use rayon::prelude::*;
@@ -99,12 +99,13 @@ pub(super) fn s4(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
 }
 
 fn spec(version: Version, albedo: f64, r: f64) -> Result<EstimatorSpec, Failure> {
-    Ok(EstimatorSpec::SingleParticle {
+    Ok(SingleParticleSpec {
         version,
         albedo: Albedo::new(albedo).map_err(Failure::refused)?,
-        sampling: SamplingSpec::Constant(1.0 / r),
-        control: ControlSpec::None,
-    })
+        sigma_samp: SamplingSpec::Constant(1.0 / r),
+        control: ControlSpec::none(),
+    }
+    .into())
 }
 
 /// (a − b) in standard errors of the difference.

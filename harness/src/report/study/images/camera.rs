@@ -1,7 +1,7 @@
 //! The pinhole camera of the scene spec, aimed at a medium: one ray through the middle of each pixel.
 
 use crate::Failure;
-use crate::plan::AnyProfile;
+use crate::field::AnyProfile;
 use crate::report::study::Subject;
 use crate::report::study::subject::enclosing_ball;
 use glam::DVec3;
@@ -55,7 +55,7 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::MediumLibrary;
+    use crate::field::MediumLibrary;
     use crate::report::study::subject;
 
     #[test]

@@ -1,7 +1,7 @@
 //! What one pixel does with its share of the look-ups.
 
 use super::borrowed::{Borrowed, PixelRay};
-use crate::plan::{Field, FieldJob, KnownField};
+use crate::field::{Field, FieldJob, KnownField};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Bounded, Constant, Counted, Domain, Extinction, FieldError, OpticalThickness, PiecewiseLinear, Vacuum,

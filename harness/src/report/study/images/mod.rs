@@ -10,10 +10,10 @@ use super::interval::bootstrap_rmse;
 use super::subject::enclosing_ball;
 use super::{Run, Study, Subject};
 use crate::Failure;
-use crate::plan::AnyProfile;
+use crate::field::AnyProfile;
 use crate::report::result::{ImagePanel, ImageStudy, Series};
 use camera::Camera;
-use exact::{Exact, Transmittance};
+use exact::{Exact, transmittance};
 use fairflight_sources::derive_seed;
 use method::Method;
 use rayon::prelude::*;
@@ -56,7 +56,7 @@ impl<'a> Scene<'a> {
                 pixels.push((pixel, profile));
             }
         }
-        let exact = pixels.par_iter().map(|(_, profile)| profile.with(Transmittance)).collect();
+        let exact = pixels.par_iter().map(|(_, profile)| transmittance(profile)).collect();
         let mean_length =
             pixels.iter().map(|(_, profile)| profile.length()).sum::<f64>() / pixels.len() as f64;
         Ok(Self { subject, resolution, pixels, exact, mean_length })

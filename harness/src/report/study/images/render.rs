@@ -94,7 +94,7 @@ fn one(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::MediumLibrary;
+    use crate::field::MediumLibrary;
     use crate::report::study::{Run, images, subject};
 
     #[test]

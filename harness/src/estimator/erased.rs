@@ -1,0 +1,117 @@
+//! Estimators with what is claimed for them, and estimators behind a pointer.
+//!
+//! A claim (a majorant, bounds in cells) is a parameter of the estimator, not knowledge of the field: with it an estimator takes any field.
+
+use fairflight_media::{
+    BoundCell, Bounded, BoundedInCells, Extinction, FieldError, InCells, RayQuadrature, Tolerance, Vacuum,
+};
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
+use std::fmt::Debug;
+
+/// An estimator with the majorant that is claimed for it.
+#[derive(Clone, Copy, Debug)]
+pub struct ByMajorant<E> {
+    estimator: E,
+    majorant: f64,
+}
+
+impl<E> ByMajorant<E> {
+    /// # Errors
+    /// If no field can have that majorant.
+    pub(super) fn new(estimator: E, majorant: f64) -> Result<Self, FieldError> {
+        Bounded::new(Vacuum::new(0.0), majorant).map(|_| Self { estimator, majorant })
+    }
+
+    pub(super) fn majorant(&self) -> f64 {
+        self.majorant
+    }
+
+    fn bounded<F: Extinction>(&self, field: F) -> Bounded<F> {
+        Bounded::new(field, self.majorant).expect("the claim is checked when it is made")
+    }
+}
+
+impl<F: Extinction, E> TransmittanceEstimator<F> for ByMajorant<E>
+where
+    E: for<'a> TransmittanceEstimator<Bounded<&'a F>>,
+{
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        self.estimator.estimate(&self.bounded(field), source)
+    }
+    #[inline]
+    fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
+        self.estimator.admits(&self.bounded(field), s, sigma_t)
+    }
+}
+
+impl<F: Extinction + Copy, E: ClosedForm<Bounded<F>>> ClosedForm<F> for ByMajorant<E> {
+    fn theory(&self, nodes: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
+        let field = *nodes.field();
+        let mut bounded = nodes.with_field(self.bounded(field));
+        let theory = self.estimator.theory(&mut bounded, tau, tolerance);
+        *nodes = bounded.with_field(field);
+        theory
+    }
+}
+
+/// An estimator with the cells that are claimed for it.
+#[derive(Clone, Debug)]
+pub(super) struct ByCells<E> {
+    pub(super) estimator: E,
+    /// Over nothing: the field comes with each estimate.
+    pub(super) cells: InCells<Vacuum, Vec<BoundCell>>,
+}
+
+impl<F: Extinction, E> TransmittanceEstimator<F> for ByCells<E>
+where
+    E: for<'a, 'b> TransmittanceEstimator<InCells<&'a F, &'b [BoundCell]>>,
+{
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+        self.estimator.estimate(&self.cells.with_field(field), source)
+    }
+    #[inline]
+    fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
+        self.estimator.admits(&self.cells.with_field(field), s, sigma_t)
+    }
+}
+
+impl<F: Extinction + Copy, E> ClosedForm<F> for ByCells<E>
+where
+    E: for<'b> ClosedForm<InCells<F, &'b [BoundCell]>>,
+{
+    fn theory(&self, nodes: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
+        let field = *nodes.field();
+        let mut in_cells = nodes.with_field(self.cells.with_field(field));
+        let ends: Vec<f64> = self.cells.bound_cells().iter().map(|cell| cell.to).collect();
+        in_cells.split_at(&ends);
+        let theory = self.estimator.theory(&mut in_cells, tau, tolerance);
+        *nodes = in_cells.with_field(field);
+        theory
+    }
+}
+
+/// A field of any type: looked up through a pointer.
+pub(super) type AnyField<'a> = &'a dyn Extinction;
+
+/// An estimator of any type, compiled once: there are more estimators than a scene's shadow rays should be compiled for.
+pub trait Erased: Debug + Send + Sync {
+    /// See [`TransmittanceEstimator::estimate`].
+    fn estimate(&self, field: AnyField<'_>, source: &mut dyn UniformSource) -> f64;
+    /// See [`TransmittanceEstimator::admits`].
+    fn admits(&self, field: AnyField<'_>, s: f64, sigma_t: f64) -> bool;
+}
+
+impl<E> Erased for E
+where
+    E: Debug + Send + Sync + for<'a> TransmittanceEstimator<AnyField<'a>>,
+{
+    fn estimate(&self, field: AnyField<'_>, mut source: &mut dyn UniformSource) -> f64 {
+        TransmittanceEstimator::estimate(self, &field, &mut source)
+    }
+    fn admits(&self, field: AnyField<'_>, s: f64, sigma_t: f64) -> bool {
+        TransmittanceEstimator::admits(self, &field, s, sigma_t)
+    }
+}

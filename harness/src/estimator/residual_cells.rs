@@ -1,0 +1,43 @@
+//! Residual ratio tracking between a minorant and a majorant in cells.
+
+use super::cells::{cells, range};
+use super::erased::ByCells;
+use super::jittered_ratio::CELLS_OF_ONE_RAY;
+use super::{CellsSpec, EstimatorKind, Prepared, RayKnown, Shadow, Work, refuse};
+use crate::field::AnyProfile;
+use crate::reader::rule::{Own, Positive};
+use crate::{Failure, kind};
+use fairflight_transmittance::ResidualCells;
+
+kind! {
+    /// Residual ratio tracking between bounds in cells.
+    ResidualCellsSpec = "residual_cells" {
+        /// Bounds of σ_t in cells: a number of them, or edges, minorants and majorants.
+        cells: CellsSpec as Own,
+        /// The sampling extinction over the difference of the bounds.
+        rate: f64 as Positive = 1.0,
+    }
+}
+
+impl EstimatorKind for ResidualCellsSpec {
+    fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
+        let estimator = ResidualCells::new(self.rate).map_err(|error| refuse("estimator.rate", error))?;
+        let cells = cells(&self.cells, profile)?;
+        let range = (self.rate >= 1.0).then(|| range(&cells));
+        let trial = profile.erased_trial(ByCells { estimator, cells });
+        Ok(Prepared::new("residual_cells", trial, "variance: closed form, integrated over the ray")
+            .within(range))
+    }
+
+    fn for_all_rays(&self, _key: &str) -> Result<Shadow, Failure> {
+        Err(refuse("cells", "are given along one ray, but a scene has many"))
+    }
+
+    fn of_one_ray(&self) -> Option<(&'static str, String)> {
+        Some(("kind", CELLS_OF_ONE_RAY.to_owned()))
+    }
+
+    fn work(&self, ray: RayKnown) -> Work {
+        Work::of("estimator.cells", ray.in_cells(&self.cells, |range| (self.rate * range).max(1.0)))
+    }
+}

@@ -1,0 +1,76 @@
+//! Transmittance of rays, shadow rays and connections of a scene, by an estimator of any kind or in closed form.
+
+use super::erased::Erased;
+use super::{ControlSpec, DoubleParticleSpec, EstimatorKind, RayEstimator, RayWorker, Unlawful};
+use crate::Failure;
+use crate::field::AnyMedium;
+use fairflight_media::{LineThickness, Ray};
+use fairflight_paths::RayTransmittance;
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::Regular;
+use std::cell::Cell;
+
+/// The part of an estimator that is the same for all rays.
+#[derive(Debug)]
+pub enum Shadow {
+    /// In closed form, where the medium has one.
+    Regular,
+    /// By an estimator.
+    Sampled(RayEstimator),
+}
+
+impl Shadow {
+    /// An estimator that is compiled once, for a field behind a pointer.
+    pub(super) fn erased(estimator: impl Erased + 'static) -> Self {
+        Self::Sampled(RayEstimator::Erased(Box::new(estimator)))
+    }
+
+    /// The one of a spec that names none: in closed form where that costs no look-up, else ratio tracking at the greatest
+    /// extinction that the medium declares.
+    ///
+    /// # Errors
+    /// If the medium declares none.
+    pub fn default_for(medium: &AnyMedium, key: &str) -> Result<Self, Failure> {
+        if matches!(medium, AnyMedium::Empty | AnyMedium::Homogeneous(_)) {
+            return Ok(Self::Regular);
+        }
+        DoubleParticleSpec::at(medium.greatest_extinction(key)?, ControlSpec::none()).for_all_rays(key)
+    }
+
+    /// One worker's estimator where look-ups are all there is; `None` for the closed form.
+    #[must_use]
+    pub fn by_look_ups<'s>(&'s self, unlawful: &'s Cell<Option<Unlawful>>) -> Option<RayWorker<'s>> {
+        match self {
+            Self::Regular => None,
+            Self::Sampled(estimator) => Some(estimator.worker(unlawful)),
+        }
+    }
+
+    /// One worker's estimator where a closed form exists.
+    #[must_use]
+    pub fn by_closed_form<'s>(&'s self, unlawful: &'s Cell<Option<Unlawful>>) -> ShadowWorker<'s> {
+        match self {
+            Self::Regular => ShadowWorker::Regular(Regular),
+            Self::Sampled(estimator) => ShadowWorker::Sampled(estimator.worker(unlawful)),
+        }
+    }
+}
+
+/// Shadow rays where a closed form exists: one branch per ray.
+#[derive(Debug)]
+pub enum ShadowWorker<'a> {
+    /// In closed form.
+    Regular(Regular),
+    /// By an estimator.
+    Sampled(RayWorker<'a>),
+}
+
+impl<M: LineThickness> RayTransmittance<M> for ShadowWorker<'_> {
+    #[inline]
+    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
+        match self {
+            Self::Regular(regular) => RayTransmittance::estimate(regular, ray, source),
+            Self::Sampled(worker) => worker.estimate(ray, source),
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Unbiased ray marching, and what comes after it.
+
+use super::pilots::{TUNING, comb_variance};
+use super::{EstimatorKind, Expected, MOST, Prepared, RayKnown, Shadow, Work, refuse};
+use crate::field::AnyProfile;
+use crate::reader::rule::{Flag, Maybe, NonNegative, Own, Ruled, Whole};
+use crate::reader::{Node, Object};
+use crate::{Failure, kind, words};
+use fairflight_transmittance::{Comb, CombShape, Roulette, UnbiasedRayMarching, teeth_for};
+use serde_json::{Value, json};
+
+/// A family of combs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CombWord {
+    /// Equidistant teeth of equal weight.
+    Uniform,
+    /// Teeth closer to the ends.
+    Periodised,
+    /// Corrected for the differences of derivatives at the ends.
+    Bernoulli,
+}
+
+words! {
+    /// The families of combs.
+    pub(super) CombRule for CombWord {
+        "uniform" => CombWord::Uniform,
+        "periodised" => CombWord::Periodised,
+        "bernoulli" => CombWord::Bernoulli,
+    }
+}
+
+/// The rule by which the series of an unbiased ray march stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RouletteSpec {
+    /// With this probability at once.
+    Stop(f64),
+    /// With what fits the variance of earlier combs.
+    SelfTuned,
+}
+
+impl RouletteSpec {
+    /// P = 0.1 (kettunen-2021).
+    pub const USUAL: Self = Self::Stop(0.9);
+}
+
+impl Ruled for RouletteSpec {
+    fn read(node: &Node<'_>) -> Result<Self, Failure> {
+        if node.text().is_ok_and(|text| text == "self_tuned") {
+            return Ok(Self::SelfTuned);
+        }
+        match node.within(0.0, 1.0) {
+            Ok(stop) if stop < 1.0 => Ok(Self::Stop(stop)),
+            _ => Err(node.refuse("must be a probability of stopping below 1, or self_tuned")),
+        }
+    }
+
+    fn written(&self) -> Value {
+        match self {
+            Self::Stop(stop) => json!(stop),
+            Self::SelfTuned => json!("self_tuned"),
+        }
+    }
+
+    fn schema() -> Value {
+        json!({ "anyOf": [{ "type": "number", "minimum": 0, "exclusiveMaximum": 1 }, { "const": "self_tuned" }] })
+    }
+}
+
+kind! {
+    /// A power series about a comb, of independent combs (kettunen-2021).
+    UnbiasedRayMarchingSpec = "unbiased_ray_marching" {
+        /// The optical thickness from which the rule takes the teeth; that of the field's majorant by default.
+        pivot: Option<f64> as Maybe<NonNegative> = None,
+        /// Look-ups per comb; by the rule by default.
+        teeth: Option<u32> as Maybe<Whole<1, MOST>> = None,
+        /// Whether a uniform comb is corrected for the difference of its ends.
+        endpoint_matching: Option<bool> as Maybe<Flag> = None,
+        /// The order of a Bernoulli comb.
+        order: Option<u32> as Maybe<Whole<2, 3>> = None,
+        /// The family of combs.
+        comb: CombWord as CombRule = CombWord::Uniform,
+        /// When the series stops: a probability, or self_tuned.
+        roulette: RouletteSpec as Own = RouletteSpec::USUAL,
+        /// Factors of the transmittance.
+        segments: u32 as Whole<1, MOST> = 1,
+    }
+    check UnbiasedRayMarchingSpec::check
+}
+
+/// More segments than this, and their closed form is costly.
+const FEW_SEGMENTS: u32 = 8;
+
+impl UnbiasedRayMarchingSpec {
+    /// One segment of so many teeth in a comb of some shape.
+    #[must_use]
+    pub fn of(shape: CombShape, teeth: u32) -> Self {
+        let (comb, endpoint_matching, order) = match shape {
+            CombShape::Uniform => (CombWord::Uniform, Some(false), None),
+            CombShape::EndpointMatched => (CombWord::Uniform, Some(true), None),
+            CombShape::Bernoulli2 => (CombWord::Bernoulli, None, Some(2)),
+            CombShape::Bernoulli3 => (CombWord::Bernoulli, None, Some(3)),
+            CombShape::Periodised => (CombWord::Periodised, None, None),
+        };
+        let (pivot, teeth) = (None, Some(teeth));
+        Self { pivot, teeth, endpoint_matching, order, comb, roulette: RouletteSpec::USUAL, segments: 1 }
+    }
+
+    /// The teeth by the rule, from an optical thickness.
+    #[must_use]
+    pub fn by_the_rule(self, pivot: f64) -> Self {
+        Self { pivot: Some(pivot), teeth: None, ..self }
+    }
+
+    /// The shape of its combs.
+    #[must_use]
+    pub fn shape(&self) -> CombShape {
+        match (self.comb, self.order, self.endpoint_matching) {
+            (CombWord::Uniform, _, Some(false)) => CombShape::Uniform,
+            (CombWord::Uniform, ..) => CombShape::EndpointMatched,
+            (CombWord::Periodised, ..) => CombShape::Periodised,
+            (CombWord::Bernoulli, Some(2), _) => CombShape::Bernoulli2,
+            (CombWord::Bernoulli, ..) => CombShape::Bernoulli3,
+        }
+    }
+
+    /// The teeth, where the field's majorant has the optical thickness `declared`.
+    #[must_use]
+    pub fn teeth(&self, declared: f64) -> u32 {
+        self.teeth.unwrap_or_else(|| teeth_for(self.pivot.unwrap_or(declared)))
+    }
+
+    fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
+        if self.teeth.is_some() && self.pivot.is_some() {
+            return Err(object.required("pivot")?.reject("is for the rule of `teeth`: give one of the two"));
+        }
+        if self.comb == CombWord::Bernoulli {
+            object.required("order")?;
+        } else if self.order.is_some() {
+            return Err(object.required("order")?.reject("belongs to the comb bernoulli"));
+        }
+        if self.comb != CombWord::Uniform && self.endpoint_matching.is_some() {
+            return Err(object.required("endpoint_matching")?.reject("belongs to the comb uniform"));
+        }
+        Ok(())
+    }
+
+    fn with(&self, teeth: u32, roulette: Roulette, key: &str) -> Result<UnbiasedRayMarching, Failure> {
+        let comb = Comb::new(teeth, self.shape()).map_err(|error| refuse(&format!("{key}.teeth"), error))?;
+        UnbiasedRayMarching::new(comb, roulette)
+            .in_segments(self.segments)
+            .map_err(|error| refuse(&format!("{key}.segments"), error))
+    }
+
+    fn stopping(stop: f64, key: &str) -> Result<Roulette, Failure> {
+        Roulette::new(stop).map_err(|error| refuse(&format!("{key}.roulette"), error))
+    }
+}
+
+impl EstimatorKind for UnbiasedRayMarchingSpec {
+    fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
+        let key = "estimator";
+        let needs = "the rule for the teeth of unbiased_ray_marching needs an optical thickness; give `teeth` or `pivot`";
+        let teeth = match (self.teeth, self.pivot) {
+            (None, None) => teeth_for(profile.declared_depth(needs)?),
+            _ => self.teeth(f64::NAN),
+        };
+        let mut variance =
+            "variance: closed form in the moments of a comb, integrated over its offset".to_owned();
+        let roulette = match self.roulette {
+            RouletteSpec::Stop(stop) => Self::stopping(stop, key)?,
+            RouletteSpec::SelfTuned => {
+                let k2 = comb_variance(profile, self.with(teeth, Self::stopping(0.0, key)?, key)?);
+                let roulette = Roulette::tuned(k2);
+                variance.push_str(&format!(
+                    "; roulette: P = {:.4} from k2 = {k2:.3e} per segment, found by {TUNING} earlier draws whose look-ups are not charged",
+                    roulette.going_on()
+                ));
+                roulette
+            }
+        };
+        let trial = profile.erased_trial(self.with(teeth, roulette, key)?);
+        let prepared = Prepared::new("unbiased_ray_marching", trial, variance);
+        Ok(Prepared { closed_form_is_costly: self.segments > FEW_SEGMENTS, ..prepared })
+    }
+
+    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+        let (None, RouletteSpec::Stop(stop)) = (self.of_one_ray(), self.roulette) else {
+            return Err(refuse(&format!("{key}.kind"), "depends on the ray"));
+        };
+        self.with(self.teeth(f64::NAN), Self::stopping(stop, key)?, key).map(Shadow::erased)
+    }
+
+    fn of_one_ray(&self) -> Option<(&'static str, String)> {
+        let reason = if self.teeth.is_none() {
+            "the rule takes the teeth of unbiased_ray_marching from one ray, but a scene has many: give `teeth`"
+        } else if self.roulette == RouletteSpec::SelfTuned {
+            "self_tuned is fitted to one ray, but a scene has many: give a stop probability"
+        } else {
+            return None;
+        };
+        Some(("kind", reason.to_owned()))
+    }
+
+    fn work(&self, ray: RayKnown) -> Work {
+        let teeth = f64::from(self.teeth(ray.declared_depth()));
+        // Ends, shared between segments, are no more than a few for each.
+        let combs = |stop: f64| {
+            let order = Roulette::new(stop).map_or(0.0, |roulette| roulette.expected_order());
+            f64::from(self.segments) * (1.0 + order) * teeth
+        };
+        let key = "estimator.teeth";
+        match self.roulette {
+            RouletteSpec::Stop(stop) => Work::of(key, Expected::Exactly(combs(stop))),
+            RouletteSpec::SelfTuned => {
+                Work::of(key, Expected::Between(0.0, combs(0.0))).after(f64::from(TUNING) * combs(0.0))
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Extinction along rays and in space: one file per kind of profile and of medium, with its keys and what is known of it; the lists.
+
+mod along_a_ray;
+mod analytic_cosine;
+mod bounds;
+mod constant;
+mod expression;
+mod homogeneous;
+mod known;
+mod library;
+mod medium;
+mod perlin;
+mod piecewise_constant;
+mod piecewise_linear;
+mod profile;
+mod vdb;
+mod voxel_lattice;
+
+pub use along_a_ray::RaySpec;
+pub use analytic_cosine::AnalyticCosineSpec;
+pub use bounds::BoundsRule;
+pub use constant::ConstantSpec;
+pub use expression::{ExpressionMediumSpec, ExpressionSpec};
+pub use homogeneous::HomogeneousSpec;
+pub use known::{ErasedField, Field, Knowledge, KnownField, ThicknessMethod};
+pub use library::MediumLibrary;
+pub use medium::{AnyMedium, MediumJob};
+pub use perlin::PerlinSpec;
+pub use piecewise_constant::PiecewiseConstantSpec;
+pub use piecewise_linear::PiecewiseLinearSpec;
+pub use profile::{AnyProfile, FieldJob};
+pub use vdb::VdbSpec;
+pub use voxel_lattice::VoxelLattice;
+
+use crate::reader::Node;
+use crate::reader::rule::Ruled;
+use crate::{Failure, registry};
+use fairflight_media::Bounds;
+use serde_json::{Value, json};
+
+registry! {
+    /// The extinction along one ray.
+    ProfileSpec: ProfileKind {
+        Constant(ConstantSpec),
+        PiecewiseConstant(PiecewiseConstantSpec),
+        PiecewiseLinear(PiecewiseLinearSpec),
+        Expression(ExpressionSpec),
+        Ray(RaySpec),
+    }
+}
+
+registry! {
+    /// The extinction in space.
+    MediumSpec: MediumKind {
+        Homogeneous(HomogeneousSpec),
+        AnalyticCosine(AnalyticCosineSpec),
+        Perlin(PerlinSpec),
+        Expression(ExpressionMediumSpec),
+        Vdb(VdbSpec),
+    }
+}
+
+/// What the harness knows of a kind of profiles beside its keys.
+pub trait ProfileKind {
+    /// The profile.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a parameter is not lawful.
+    fn build(&self, library: &MediumLibrary) -> Result<AnyProfile, Failure>;
+}
+
+/// What the harness knows of a kind of media beside its keys.
+pub trait MediumKind {
+    /// The medium and its bounds; `key` leads to the spec.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or a parameter is not lawful.
+    fn build(&self, library: &MediumLibrary, key: &str) -> Result<(AnyMedium, Bounds), Failure>;
+}
+
+impl Ruled for MediumSpec {
+    fn read(node: &Node<'_>) -> Result<Self, Failure> {
+        Self::read(node)
+    }
+    fn written(&self) -> Value {
+        Self::written(self)
+    }
+    fn schema() -> Value {
+        json!({ "$ref": "#/$defs/medium" })
+    }
+}
+
+/// A refusal of a profile.
+fn refused(error: impl std::fmt::Display) -> Failure {
+    Failure::refused(format!("profile: {error}"))
+}

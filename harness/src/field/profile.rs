@@ -1,0 +1,173 @@
+//! A profile of any kind.
+
+use super::known::ErasedField;
+use super::{AnyMedium, Field, KnownField, VoxelLattice, refused};
+use crate::Failure;
+use crate::estimator::{On, Trial};
+use fairflight_media::{
+    AnalyticCosine, Certified, Clip, Constant, ExpressionMedium, ExpressionProfile, Homogeneous, Perlin,
+    PiecewiseConstant, PiecewiseLinear, Ray, Voxels,
+};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Defines the profile: one variant per field type.
+macro_rules! profiles {
+    ($($(#[$doc:meta])* $Variant:ident($Field:ty)),+ $(,)?) => {
+        /// A profile: one of the field types that the harness knows.
+        #[derive(Clone, Debug)]
+        pub enum AnyProfile { $($(#[$doc])* $Variant($Field)),+ }
+
+        impl AnyProfile {
+            /// The field, behind a pointer.
+            #[must_use]
+            pub fn field(&self) -> &dyn KnownField {
+                match self { $(Self::$Variant(field) => field),+ }
+            }
+
+            /// Does a job with the field inside, compiled for its type.
+            pub fn with<J: FieldJob>(&self, job: J) -> J::Output {
+                match self { $(Self::$Variant(field) => job.run(field)),+ }
+            }
+
+            /// An estimator on this profile, compiled for the type of its field.
+            pub fn trial<E>(&self, estimator: E) -> Arc<dyn Trial>
+            where
+                E: 'static,
+                $(On<$Field, E>: Trial),+
+            {
+                match self { $(Self::$Variant(field) => On::trial(field.clone(), estimator)),+ }
+            }
+
+            /// An estimator on this profile, compiled once for all types of fields: a look-up is then an indirect call, which
+            /// `cargo bench --bench lookups` measures.
+            pub fn erased_trial<E>(&self, estimator: E) -> Arc<dyn Trial>
+            where
+                E: 'static,
+                On<ErasedField, E>: Trial,
+            {
+                let field: Arc<dyn KnownField> =
+                    match self { $(Self::$Variant(field) => Arc::new(field.clone())),+ };
+                On::trial(ErasedField(field), estimator)
+            }
+        }
+    };
+}
+
+profiles! {
+    /// The same everywhere.
+    Constant(Constant),
+    /// One value per cell.
+    PiecewiseConstant(PiecewiseConstant),
+    /// Linear between nodes.
+    PiecewiseLinear(PiecewiseLinear),
+    /// A formula in s.
+    Expression(Certified<ExpressionProfile>),
+    /// A ray through a homogeneous medium.
+    Homogeneous(Ray<Arc<Homogeneous>>),
+    /// A ray through szirmay-kalos-2017 eq. 21.
+    AnalyticCosine(Ray<Arc<AnalyticCosine>>),
+    /// A ray through noise.
+    Perlin(Certified<Ray<Arc<Perlin>>>),
+    /// A ray through a formula in x, y, z.
+    ExpressionMedium(Certified<Ray<Arc<ExpressionMedium>>>),
+    /// A ray through voxels.
+    Voxels(Ray<Arc<Voxels<VoxelLattice>>>),
+}
+
+/// Something to be done with a field of whatever type it has, per look-up.
+pub trait FieldJob {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn run<F: KnownField>(self, field: &F) -> Self::Output
+    where
+        for<'a> &'a F: Field;
+}
+
+/// A ray that crosses more voxel cells than this is refused: its reference alone would take minutes.
+const MOST_CELLS: u64 = 1 << 24;
+
+impl AnyProfile {
+    /// A clipped ray through a medium.
+    ///
+    /// # Errors
+    /// If it crosses too many voxels.
+    pub fn ray(medium: &AnyMedium, clip: &Clip) -> Result<Self, Failure> {
+        Ok(match medium {
+            AnyMedium::Empty => Self::Constant(Constant::new(0.0, clip.length).map_err(refused)?),
+            AnyMedium::Homogeneous(medium) => Self::Homogeneous(Ray::new(Arc::clone(medium), clip)),
+            AnyMedium::AnalyticCosine(medium) => Self::AnalyticCosine(Ray::new(Arc::clone(medium), clip)),
+            AnyMedium::Perlin(medium) => Self::Perlin(Certified::new(Ray::new(Arc::clone(medium), clip))),
+            AnyMedium::Expression(medium) => {
+                Self::ExpressionMedium(Certified::new(Ray::new(Arc::clone(medium), clip)))
+            }
+            AnyMedium::Voxels(medium) => {
+                let ray = Ray::new(Arc::clone(medium), clip);
+                let cells = medium.cells_crossed(ray.local_line(), clip.length);
+                if cells > MOST_CELLS {
+                    return Err(Failure::refused(format!(
+                        "profile: the ray crosses up to {cells} voxel cells, more than {MOST_CELLS}"
+                    )));
+                }
+                Self::Voxels(ray)
+            }
+        })
+    }
+
+    /// The distance from the ray's origin to the start of the profile: 0 for a profile that is no ray.
+    #[must_use]
+    pub fn entry_distance(&self) -> f64 {
+        match self {
+            Self::Constant(_)
+            | Self::PiecewiseConstant(_)
+            | Self::PiecewiseLinear(_)
+            | Self::Expression(_) => 0.0,
+            Self::Homogeneous(ray) => ray.entry_distance(),
+            Self::AnalyticCosine(ray) => ray.entry_distance(),
+            Self::Perlin(ray) => ray.field().entry_distance(),
+            Self::ExpressionMedium(ray) => ray.field().entry_distance(),
+            Self::Voxels(ray) => ray.entry_distance(),
+        }
+    }
+
+    /// The length of the profile.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.field().length()
+    }
+
+    /// The majorant that the profile declares, 0 at least.
+    #[must_use]
+    pub fn declared(&self) -> Option<f64> {
+        self.field().knowledge().upper_bound.map(|bound| bound.max(0.0))
+    }
+
+    /// The optical thickness of the majorant that the profile declares.
+    ///
+    /// # Errors
+    /// If it declares none; `needs` says what for.
+    pub fn declared_depth(&self, needs: &str) -> Result<f64, Failure> {
+        self.declared().map(|majorant| majorant * self.length()).ok_or_else(|| {
+            Failure::refused(format!("estimator: {needs}, or declare the `majorant` of the profile"))
+        })
+    }
+
+    /// A distance inside the profile as a person gave it: from the ray's origin, with the point for a ray.
+    #[must_use]
+    pub fn place(&self, s: f64) -> String {
+        let at = format!("s = {}", self.entry_distance() + s);
+        let point = |ray: DVec3| format!("{at}, point [{}, {}, {}]", ray.x, ray.y, ray.z);
+        match self {
+            Self::Constant(_)
+            | Self::PiecewiseConstant(_)
+            | Self::PiecewiseLinear(_)
+            | Self::Expression(_) => at,
+            Self::Homogeneous(ray) => point(ray.world_point(s)),
+            Self::AnalyticCosine(ray) => point(ray.world_point(s)),
+            Self::Perlin(ray) => point(ray.field().world_point(s)),
+            Self::ExpressionMedium(ray) => point(ray.field().world_point(s)),
+            Self::Voxels(ray) => point(ray.world_point(s)),
+        }
+    }
+}

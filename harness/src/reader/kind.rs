@@ -1,0 +1,291 @@
+//! Kinds: a thing that a spec can ask for, declared once with its keys; lists of kinds.
+
+use super::{Node, Object};
+use crate::Failure;
+use serde_json::{Map, Value, json};
+
+/// One key of a kind.
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// The name.
+    pub name: &'static str,
+    /// Whether it may be left out.
+    pub optional: bool,
+    /// The quantity, with its unit.
+    pub about: &'static str,
+    /// The JSON Schema of its values.
+    pub schema: Value,
+}
+
+/// A kind of a thing, with its keys.
+pub trait Kind: Sized {
+    /// The value of `kind`.
+    const NAME: &'static str;
+    /// The quantity or method, and where it comes from.
+    const ABOUT: &'static str;
+
+    /// Takes the keys of the kind from an object.
+    ///
+    /// # Errors
+    /// If one is missing or does not keep its rule.
+    fn take_from(object: &Object<'_>) -> Result<Self, Failure>;
+
+    /// Adds the keys to an object; those that were left out are null.
+    fn write_to(&self, object: &mut Map<String, Value>);
+
+    /// The keys, in the order in which they are read.
+    fn keys() -> Vec<Key>;
+
+    /// What [`take_from`](Self::take_from) cannot see key by key: which go together.
+    ///
+    /// # Errors
+    /// If some do not.
+    fn check(&self, _object: &Object<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// One kind of a list.
+#[derive(Clone, Debug)]
+pub struct Listed {
+    /// The value of `kind`.
+    pub name: &'static str,
+    /// The quantity or method, and where it comes from.
+    pub about: &'static str,
+    /// Its keys.
+    pub keys: Vec<Key>,
+}
+
+impl Listed {
+    /// A kind as it is listed.
+    #[must_use]
+    pub fn of<K: Kind>() -> Self {
+        Self { name: K::NAME, about: K::ABOUT.trim(), keys: K::keys() }
+    }
+
+    /// The keys as words: those that may be left out in brackets.
+    #[must_use]
+    pub fn signature(&self) -> String {
+        let keys = self
+            .keys
+            .iter()
+            .map(|key| if key.optional { format!("[{}]", key.name) } else { key.name.to_owned() });
+        keys.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The JSON Schema of an object of this kind.
+    #[must_use]
+    pub fn schema(&self) -> Value {
+        let mut properties = Map::new();
+        properties.insert("kind".to_owned(), json!({ "const": self.name }));
+        for key in &self.keys {
+            let mut schema = key.schema.clone();
+            if let Value::Object(map) = &mut schema {
+                map.insert("description".to_owned(), json!(key.about));
+            }
+            properties.insert(key.name.to_owned(), schema);
+        }
+        let required: Vec<&str> = std::iter::once("kind")
+            .chain(self.keys.iter().filter(|key| !key.optional).map(|key| key.name))
+            .collect();
+        json!({
+            "type": "object", "description": self.about, "properties": properties, "required": required,
+            "additionalProperties": false,
+        })
+    }
+}
+
+/// Reads an object whose key `kind` says what it is.
+///
+/// # Errors
+/// If the kind is none of `names`, or its keys are refused.
+pub fn read_listed<T>(
+    node: &Node<'_>,
+    names: &[&str],
+    take: impl FnOnce(&str, &Object<'_>) -> Option<Result<T, Failure>>,
+) -> Result<T, Failure> {
+    let object = node.object()?;
+    let read = take_listed(&object, names, take)?;
+    object.finish()?;
+    Ok(read)
+}
+
+/// Takes from an object whose key `kind` says what it is, and which may have other keys beside those of the kind.
+///
+/// # Errors
+/// If the kind is none of `names`, or its keys are refused.
+pub fn take_listed<T>(
+    object: &Object<'_>,
+    names: &[&str],
+    take: impl FnOnce(&str, &Object<'_>) -> Option<Result<T, Failure>>,
+) -> Result<T, Failure> {
+    let kind = object.required("kind")?;
+    take(kind.text()?, object)
+        .unwrap_or_else(|| Err(kind.refuse(format!("must be {}", super::rule::one_of(names)))))
+}
+
+/// Takes a kind and checks which of its keys go together.
+///
+/// # Errors
+/// If a key is refused.
+pub fn take<K: Kind>(object: &Object<'_>) -> Result<K, Failure> {
+    let kind = K::take_from(object)?;
+    kind.check(object)?;
+    Ok(kind)
+}
+
+/// An object of a kind, without the keys that were left out.
+pub fn written<K: Kind>(kind: &K) -> Value {
+    let mut object = Map::new();
+    object.insert("kind".to_owned(), json!(K::NAME));
+    kind.write_to(&mut object);
+    object.retain(|_, value| !value.is_null());
+    Value::Object(object)
+}
+
+/// Defines a kind: a struct whose fields are its keys, each with a type, a rule, and `= value` where it may be left out.
+///
+/// ```ignore
+/// kind! {
+///     /// Track length: 1 if a flight escapes, else 0 (raab-2008 algorithm 1).
+///     WoodcockSpec = "woodcock" {
+///         /// An upper bound of σ_t [1/length].
+///         majorant: f64 as NonNegative,
+///     }
+/// }
+/// ```
+#[macro_export]
+macro_rules! kind {
+    (
+        $(#[doc = $about:literal])+
+        $Name:ident = $name:literal {
+            $($(#[doc = $doc:literal])+ $key:ident : $Type:ty as $Rule:ty $(= $default:expr)?),* $(,)?
+        }
+        $(check $check:expr)?
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $Name { $($(#[doc = $doc])+ pub $key: $Type),* }
+
+        impl $crate::reader::Kind for $Name {
+            const NAME: &'static str = $name;
+            const ABOUT: &'static str = concat!($($about),+);
+
+            fn take_from(object: &$crate::reader::Object<'_>) -> Result<Self, $crate::Failure> {
+                let _ = object;
+                Ok(Self { $($key: $crate::kind!(@take object, $key, $Type, $Rule $(, $default)?)),* })
+            }
+
+            fn write_to(&self, object: &mut serde_json::Map<String, serde_json::Value>) {
+                let _ = &object;
+                $(object.insert(
+                    stringify!($key).to_owned(),
+                    <$Rule as $crate::reader::Rule<$Type>>::written(&self.$key),
+                );)*
+            }
+
+            fn keys() -> Vec<$crate::reader::kind::Key> {
+                vec![$($crate::reader::kind::Key {
+                    name: stringify!($key),
+                    optional: $crate::kind!(@optional $($default)?),
+                    about: concat!($($doc),+).trim_ascii(),
+                    schema: <$Rule as $crate::reader::Rule<$Type>>::schema(),
+                }),*]
+            }
+
+            $(fn check(&self, object: &$crate::reader::Object<'_>) -> Result<(), $crate::Failure> {
+                let check: fn(&Self, &$crate::reader::Object<'_>) -> Result<(), $crate::Failure> = $check;
+                check(self, object)
+            })?
+        }
+    };
+    (@take $object:ident, $key:ident, $Type:ty, $Rule:ty) => {
+        <$Rule as $crate::reader::Rule<$Type>>::read(&$object.required(stringify!($key))?)?
+    };
+    (@take $object:ident, $key:ident, $Type:ty, $Rule:ty, $default:expr) => {
+        match $object.optional(stringify!($key)) {
+            Some(node) => <$Rule as $crate::reader::Rule<$Type>>::read(&node)?,
+            None => $default,
+        }
+    };
+    (@optional) => { false };
+    (@optional $default:expr) => { true };
+}
+
+/// Defines the list of all kinds of a thing: an enum, its reader and writer, its names.
+#[macro_export]
+macro_rules! registry {
+    ($(#[$doc:meta])* $Name:ident $(: $Trait:path)? { $($Variant:ident($Kind:ty)),+ $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum $Name { $(#[doc = concat!("See [`", stringify!($Kind), "`].")] $Variant($Kind)),+ }
+
+        $(impl From<$Kind> for $Name {
+            fn from(kind: $Kind) -> Self {
+                Self::$Variant(kind)
+            }
+        })+
+
+        impl $Name {
+            /// The values of `kind`.
+            pub const NAMES: &'static [&'static str] = &[$(<$Kind as $crate::reader::Kind>::NAME),+];
+
+            /// Reads an object of one of these kinds.
+            ///
+            /// # Errors
+            /// If a key is missing, unknown, or does not keep its rule.
+            pub fn read(node: &$crate::reader::Node<'_>) -> Result<Self, $crate::Failure> {
+                $crate::reader::kind::read_listed(node, Self::NAMES, Self::take_from)
+            }
+
+            /// Takes the keys of the kind `name` from an object; `None` if there is no such kind.
+            pub fn take_from(
+                name: &str,
+                object: &$crate::reader::Object<'_>,
+            ) -> Option<Result<Self, $crate::Failure>> {
+                $(if name == <$Kind as $crate::reader::Kind>::NAME {
+                    return Some($crate::reader::kind::take::<$Kind>(object).map(Self::$Variant));
+                })+
+                None
+            }
+
+            /// Takes one of these kinds from an object that may have other keys as well.
+            ///
+            /// # Errors
+            /// If a key is missing, or does not keep its rule.
+            pub fn take(object: &$crate::reader::Object<'_>) -> Result<Self, $crate::Failure> {
+                $crate::reader::kind::take_listed(object, Self::NAMES, Self::take_from)
+            }
+
+            /// The JSON that reads back as it.
+            #[must_use]
+            pub fn written(&self) -> serde_json::Value {
+                match self { $(Self::$Variant(kind) => $crate::reader::kind::written(kind)),+ }
+            }
+
+            /// The value of its key `kind`.
+            #[must_use]
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$Variant(_) => <$Kind as $crate::reader::Kind>::NAME),+ }
+            }
+
+            /// All kinds, as they are listed.
+            #[must_use]
+            pub fn listed() -> Vec<$crate::reader::Listed> {
+                vec![$($crate::reader::Listed::of::<$Kind>()),+]
+            }
+        }
+
+        $crate::registry!(@object $Name { $($Variant),+ } $($Trait)?);
+    };
+    (@object $Name:ident { $($Variant:ident),+ }) => {};
+    (@object $Name:ident { $($Variant:ident),+ } $Trait:path) => {
+        impl $Name {
+            /// The kind itself.
+            #[must_use]
+            pub fn kind(&self) -> &dyn $Trait {
+                match self { $(Self::$Variant(kind) => kind),+ }
+            }
+        }
+    };
+}
