@@ -50,7 +50,7 @@ fn made_of_transmittance(scene: &SceneSpec, volume: &VolumeSpec) -> Result<(), F
         )));
     }
     match scene.integrator {
-        IntegratorSpec::Transmittance { .. } => Ok(()),
+        IntegratorSpec::Transmittance(_) => Ok(()),
         _ => Err(Failure::refused(format!("integrator.kind: is not transmittance, and {ALTERNATIVES}"))),
     }
 }

@@ -60,8 +60,9 @@ pub use unbiased_ray_marching::{CombWord, RouletteSpec, UnbiasedRayMarchingSpec}
 pub use woodcock::WoodcockSpec;
 
 use crate::field::AnyProfile;
-use crate::reader::Node;
+use crate::reader::{Node, Rule};
 use crate::{Failure, registry};
+use serde_json::{Value, json};
 
 registry! {
     /// An estimator of transmittance with its parameters, in the coordinates of the profile spec.
@@ -112,6 +113,22 @@ pub trait EstimatorKind {
     /// Whether this is a labelled biased baseline.
     fn is_biased_baseline(&self) -> bool {
         false
+    }
+}
+
+/// The rule of an estimator of a scene, which has many rays.
+#[derive(Debug)]
+pub struct ForAllRays;
+
+impl Rule<EstimatorSpec> for ForAllRays {
+    fn read(node: &Node<'_>) -> Result<EstimatorSpec, Failure> {
+        EstimatorSpec::read_for_all_rays(node)
+    }
+    fn written(spec: &EstimatorSpec) -> Value {
+        spec.written()
+    }
+    fn schema() -> Value {
+        json!({ "$ref": "#/$defs/estimator" })
     }
 }
 

@@ -4,9 +4,9 @@ use super::single_scattering::SingleScatteringPlan;
 use super::transport::{AmongSurfaces, PathTracerPlan, Stage, VplPlan};
 use super::{SpaceSampling, WalkPlan};
 use crate::Failure;
-use crate::estimator::{EstimatorSpec, RayEstimator, Shadow, Unlawful};
+use crate::estimator::{RayEstimator, Shadow, Unlawful};
 use crate::field::AnyMedium;
-use crate::spec::{IntegratorSpec, Particles, SingleScatteringSpec};
+use crate::spec::{IntegratorSpec, Particles, TransmittanceSpec};
 use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Lights, Spectrum, Volume};
@@ -87,7 +87,7 @@ impl IntegratorPlan {
     /// If a parameter is not lawful.
     pub fn build(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
         match spec {
-            IntegratorSpec::Transmittance { estimator } => {
+            IntegratorSpec::Transmittance(TransmittanceSpec { estimator }) => {
                 Ok(match estimator.kind().for_all_rays("integrator.estimator")? {
                     Shadow::Regular => Self::RegularTransmittance,
                     Shadow::Sampled(estimator) => Self::Transmittance(estimator),
@@ -100,12 +100,12 @@ impl IntegratorPlan {
                     Particles::Photons => Self::PhotonTracer(walk),
                 })
             }
-            IntegratorSpec::LineSplitting { walk, majorant, splits, starts } => Ok(Self::LineSplitting {
-                walk: WalkPlan::build(walk, medium, bounds)?,
-                line: LineIntegral::new(*splits)
+            IntegratorSpec::LineSplitting(spec) => Ok(Self::LineSplitting {
+                walk: WalkPlan::build(&spec.walk, medium, bounds)?,
+                line: LineIntegral::new(spec.splits)
                     .map_err(|error| Failure::refused(format!("integrator.splits: {error}")))?,
-                starts: *starts,
-                majorant: *majorant,
+                starts: spec.starts,
+                majorant: spec.majorant,
             }),
             IntegratorSpec::SingleScattering(spec) => {
                 SingleScatteringPlan::build(spec).map(Self::SingleScattering)
@@ -272,24 +272,6 @@ impl IntegratorPlan {
             }
             _ => format!("integrator.estimator: not defined for {at}"),
         })
-    }
-}
-
-impl IntegratorSpec {
-    /// What is biased by design, if anything is.
-    #[must_use]
-    pub fn biased_baseline(&self) -> Option<&'static str> {
-        let is_biased = EstimatorSpec::is_biased_baseline;
-        let biased = match self {
-            Self::Transmittance { estimator } => is_biased(estimator),
-            Self::SingleScattering(SingleScatteringSpec { estimator, shadow, .. }) => {
-                is_biased(estimator) || shadow.as_ref().is_some_and(is_biased)
-            }
-            Self::PathTracer(spec) => spec.transport.estimator.as_ref().is_some_and(is_biased),
-            Self::Vpl(spec) => return spec.biased_by_design(is_biased),
-            Self::ParticleTracer(_) | Self::LineSplitting { .. } => false,
-        };
-        biased.then_some("its estimator of transmittance is a biased baseline")
     }
 }
 

@@ -1,7 +1,5 @@
 //! A phase function of any kind.
 
-use crate::Failure;
-use crate::spec::PhaseSpec;
 use fairflight_media::PhaseFunction;
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh, Schlick, Tabulated};
 
@@ -18,29 +16,6 @@ pub enum AnyPhase {
     Schlick(Schlick),
     /// Linear between nodes.
     Tabulated(Tabulated),
-}
-
-/// Nodes of the hazy atmosphere: right to 1e-4 of the peak.
-const HAZY_NODES: usize = 257;
-
-impl AnyPhase {
-    /// The phase function of a spec.
-    ///
-    /// # Errors
-    /// If a parameter is not lawful.
-    pub fn build(spec: &PhaseSpec) -> Result<Self, Failure> {
-        let phase = match spec {
-            PhaseSpec::Isotropic => Ok(Self::Isotropic(Isotropic)),
-            PhaseSpec::Rayleigh => Ok(Self::Rayleigh(Rayleigh)),
-            PhaseSpec::HenyeyGreenstein { g } => HenyeyGreenstein::new(*g).map(Self::HenyeyGreenstein),
-            PhaseSpec::Schlick { k } => Schlick::new(*k).map(Self::Schlick),
-            PhaseSpec::Tabulated { cosines, values } => {
-                Tabulated::new(cosines.clone(), values.clone()).map(Self::Tabulated)
-            }
-            PhaseSpec::HazyMie => Tabulated::hazy_mie(HAZY_NODES).map(Self::Tabulated),
-        };
-        phase.map_err(|error| Failure::refused(format!("medium.phase: {error}")))
-    }
 }
 
 impl AnyPhase {

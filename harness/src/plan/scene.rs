@@ -4,7 +4,9 @@ use super::{AnyPhase, IntegratorPlan, surfaces};
 use crate::Failure;
 use crate::field::{AnyMedium, MediumLibrary};
 use crate::image::Image;
-use crate::spec::{Collisions, LightSpec, SceneSpec};
+use crate::spec::{
+    Collisions, DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec, LightSpec, PointSpec, SceneSpec,
+};
 use fairflight_media::Bounds;
 use fairflight_scene::{Background, Camera, EnvironmentMap, Lights, SceneError, Source, Spectrum, Surfaces};
 use glam::DVec3;
@@ -64,12 +66,16 @@ impl ScenePlan {
             // A point, where nothing can be anyway.
             None => (AnyMedium::Empty, Bounds::sphere(DVec3::ZERO, 0.0).map_err(Failure::refused)?),
         };
-        let phase = spec
-            .medium
-            .as_ref()
-            .map_or(Ok(AnyPhase::Isotropic(fairflight_media::phase::Isotropic)), |volume| {
-                AnyPhase::build(&volume.phase)
-            })?;
+        let phase = spec.medium.as_ref().map_or(
+            Ok(AnyPhase::Isotropic(fairflight_media::phase::Isotropic)),
+            |volume| {
+                volume
+                    .phase
+                    .kind()
+                    .build()
+                    .map_err(|error| Failure::refused(format!("medium.phase: {error}")))
+            },
+        )?;
         let maps = read_maps(&spec.lights)?;
         let gray = spec.is_gray() && maps.iter().flatten().all(is_gray);
         let separate = spec.integrator.walk().is_some_and(|walk| walk.colour == Collisions::Separate);
@@ -98,7 +104,7 @@ impl ScenePlan {
 /// The picture of each light that is one.
 fn read_maps(lights: &[LightSpec]) -> Result<Vec<Option<Image>>, Failure> {
     let read = |(i, light): (usize, &LightSpec)| match light {
-        LightSpec::EnvironmentMap { file } => {
+        LightSpec::EnvironmentMap(EnvironmentMapSpec { file }) => {
             Image::read(file).map(Some).map_err(|failure| failure.within(format!("lights.{i}.file")))
         }
         _ => Ok(None),
@@ -118,10 +124,10 @@ impl<C: Spectrum> Radiant<C> {
         for (i, (light, map)) in spec.lights.iter().zip(maps).enumerate() {
             let refuse = |error: SceneError| Failure::refused(format!("lights.{i}: {error}"));
             match (light, map) {
-                (LightSpec::Environment { radiance }, _) => {
+                (LightSpec::Environment(EnvironmentSpec { radiance }), _) => {
                     lights.background.constant += of(radiance.rgb());
                 }
-                (LightSpec::EnvironmentMap { file }, Some(map)) => {
+                (LightSpec::EnvironmentMap(EnvironmentMapSpec { file }), Some(map)) => {
                     let pixels = map.pixels().iter().map(|pixel| of(pixel.map(f64::from)));
                     let map = EnvironmentMap::new(map.width(), map.height(), pixels.collect());
                     let in_file = |error: SceneError| {
@@ -129,12 +135,12 @@ impl<C: Spectrum> Radiant<C> {
                     };
                     lights.background.maps.push(map.map_err(in_file)?);
                 }
-                (LightSpec::EnvironmentMap { .. }, None) => {}
-                (LightSpec::Point { position, power }, _) => {
+                (LightSpec::EnvironmentMap(_), None) => {}
+                (LightSpec::Point(PointSpec { position, power }), _) => {
                     let light = Source::point(*position, of(power.rgb()));
                     lights.sources.push(light.map_err(refuse)?);
                 }
-                (LightSpec::Directional { direction, irradiance }, _) => {
+                (LightSpec::Directional(DirectionalSpec { direction, irradiance }), _) => {
                     let light = Source::directional(*direction, of(irradiance.rgb()));
                     lights.sources.push(light.map_err(refuse)?);
                 }

@@ -1,7 +1,7 @@
 //! The surfaces of a scene, and whether lights and integrator fit them.
 
 use crate::Failure;
-use crate::spec::{LightSpec, MaterialSpec, SceneSpec, SurfaceSpec};
+use crate::spec::{LightSpec, MaterialSpec, PointSpec, SceneSpec, SurfaceSpec};
 use fairflight_scene::{Material, SceneError, Spectrum, Surface, Surfaces};
 use glam::DVec3;
 
@@ -11,12 +11,14 @@ pub(super) fn build<C: Spectrum>(
     of: impl Fn([f64; 3]) -> C,
 ) -> Result<Surfaces<C>, Failure> {
     let one = |spec: &SurfaceSpec| -> Result<Surface<C>, SceneError> {
-        let material = match spec.material {
-            MaterialSpec::Diffuse { reflectance } => Material::Diffuse { reflectance: of(reflectance.rgb()) },
-            MaterialSpec::Mirror => Material::Mirror,
-            MaterialSpec::Dielectric { ior } => Material::Dielectric { ior },
+        let material = match &spec.material {
+            MaterialSpec::Diffuse(material) => {
+                Material::Diffuse { reflectance: of(material.reflectance.rgb()) }
+            }
+            MaterialSpec::Mirror(_) => Material::Mirror,
+            MaterialSpec::Dielectric(material) => Material::Dielectric { ior: material.ior },
         };
-        Surface::new(spec.shape.build()?, material, of(spec.emission.rgb()))
+        Surface::new(spec.shape.kind().build()?, material, of(spec.emission.rgb()))
     };
     let all = specs
         .iter()
@@ -32,7 +34,7 @@ pub(super) fn build<C: Spectrum>(
 pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
     let camera = spec.camera.origin();
     for (i, light) in spec.lights.iter().enumerate() {
-        let LightSpec::Point { position, .. } = light else { continue };
+        let LightSpec::Point(PointSpec { position, .. }) = light else { continue };
         let position = *position;
         if let Some(j) = solid_around(&spec.surfaces, camera, |solid| solid.shape.encloses(position)) {
             return Err(shut_in(&format!("lights.{i}.position"), j));
@@ -51,7 +53,8 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
             return Err(shut_in(&format!("surfaces.{i}"), j));
         }
     }
-    if let (Some(name), false) = (spec.integrator.blind_to_surfaces(), spec.surfaces.is_empty()) {
+    if !spec.integrator.kind().knows_surfaces() && !spec.surfaces.is_empty() {
+        let name = spec.integrator.name();
         return Err(Failure::refused(format!(
             "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer and vpl"
         )));
@@ -60,7 +63,7 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
 }
 
 fn is_dielectric(surface: &SurfaceSpec) -> bool {
-    matches!(surface.material, MaterialSpec::Dielectric { .. })
+    matches!(surface.material, MaterialSpec::Dielectric(_))
 }
 
 /// A sphere that light cannot leave, with the light inside and the camera outside: from inside, one sees.

@@ -49,7 +49,7 @@ impl WalkPlan {
     pub(super) fn build(spec: &WalkSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
         let refuse =
             |error: &dyn std::fmt::Display| Failure::refused(format!("integrator.sigma_samp: {error}"));
-        let sampling = match spec.sampling {
+        let sampling = match spec.sigma_samp {
             SamplingFieldSpec::FromMedium => {
                 let greatest = medium.greatest_extinction("integrator.sigma_samp")?;
                 Field::Uniform(Uniform::new(greatest).map_err(|error| refuse(&error))?)

@@ -1,6 +1,6 @@
 //! Kinds: a thing that a spec can ask for, declared once with its keys; lists of kinds.
 
-use super::{Node, Object};
+use super::{Node, Object, Rule};
 use crate::Failure;
 use serde_json::{Map, Value, json};
 
@@ -17,14 +17,9 @@ pub struct Key {
     pub schema: Value,
 }
 
-/// A kind of a thing, with its keys.
-pub trait Kind: Sized {
-    /// The value of `kind`.
-    const NAME: &'static str;
-    /// The quantity or method, and where it comes from.
-    const ABOUT: &'static str;
-
-    /// Takes the keys of the kind from an object.
+/// A group of keys.
+pub trait Keys: Sized {
+    /// Takes the keys from an object.
     ///
     /// # Errors
     /// If one is missing or does not keep its rule.
@@ -35,14 +30,79 @@ pub trait Kind: Sized {
 
     /// The keys, in the order in which they are read.
     fn keys() -> Vec<Key>;
+}
 
-    /// What [`take_from`](Self::take_from) cannot see key by key: which go together.
+/// A kind of a thing, with its keys.
+pub trait Kind: Keys {
+    /// The value of `kind`.
+    const NAME: &'static str;
+    /// The quantity or method, and where it comes from.
+    const ABOUT: &'static str;
+
+    /// What [`take_from`](Keys::take_from) cannot see key by key: which go together.
     ///
     /// # Errors
     /// If some do not.
     fn check(&self, _object: &Object<'_>) -> Result<(), Failure> {
         Ok(())
     }
+}
+
+/// The rule of a group of keys: they stand among those of the object.
+#[derive(Debug)]
+pub struct Among;
+
+impl<T: Keys> Rule<T> for Among {
+    fn read(node: &Node<'_>) -> Result<T, Failure> {
+        let object = node.object()?;
+        let group = T::take_from(&object)?;
+        object.finish()?;
+        Ok(group)
+    }
+    fn written(group: &T) -> Value {
+        let mut object = Map::new();
+        group.write_to(&mut object);
+        Value::Object(object)
+    }
+    fn schema() -> Value {
+        group_schema::<T>()
+    }
+    fn take(object: &Object<'_>, _name: &'static str, _default: Option<fn() -> T>) -> Result<T, Failure> {
+        T::take_from(object)
+    }
+    fn put(group: &T, _name: &'static str, object: &mut Map<String, Value>) {
+        group.write_to(object);
+    }
+    fn keys(_name: &'static str, _about: &'static str, _optional: bool) -> Vec<Key> {
+        T::keys()
+    }
+}
+
+/// The JSON Schema of an object that holds a group of keys and no others.
+#[must_use]
+pub fn group_schema<T: Keys>() -> Value {
+    object_schema(Map::new(), &T::keys(), Vec::new())
+}
+
+/// The JSON Schema of an object with some properties, and keys beside them.
+fn object_schema(mut properties: Map<String, Value>, keys: &[Key], mut required: Vec<&str>) -> Value {
+    for key in keys {
+        let mut schema = key.schema.clone();
+        if let Value::Object(map) = &mut schema {
+            map.insert("description".to_owned(), json!(plain(key.about)));
+        }
+        properties.insert(key.name.to_owned(), schema);
+        if !key.optional {
+            required.push(key.name);
+        }
+    }
+    json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
+}
+
+/// The text of a doc comment without its escapes.
+#[must_use]
+pub fn plain(doc: &str) -> String {
+    doc.trim().replace("\\[", "[").replace("\\]", "]")
 }
 
 /// One kind of a list.
@@ -76,22 +136,10 @@ impl Listed {
     /// The JSON Schema of an object of this kind.
     #[must_use]
     pub fn schema(&self) -> Value {
-        let mut properties = Map::new();
-        properties.insert("kind".to_owned(), json!({ "const": self.name }));
-        for key in &self.keys {
-            let mut schema = key.schema.clone();
-            if let Value::Object(map) = &mut schema {
-                map.insert("description".to_owned(), json!(key.about));
-            }
-            properties.insert(key.name.to_owned(), schema);
-        }
-        let required: Vec<&str> = std::iter::once("kind")
-            .chain(self.keys.iter().filter(|key| !key.optional).map(|key| key.name))
-            .collect();
-        json!({
-            "type": "object", "description": self.about, "properties": properties, "required": required,
-            "additionalProperties": false,
-        })
+        let properties = Map::from_iter([("kind".to_owned(), json!({ "const": self.name }))]);
+        let mut schema = object_schema(properties, &self.keys, vec!["kind"]);
+        schema["description"] = json!(plain(self.about));
+        schema
     }
 }
 
@@ -143,7 +191,52 @@ pub fn written<K: Kind>(kind: &K) -> Value {
     Value::Object(object)
 }
 
-/// Defines a kind: a struct whose fields are its keys, each with a type, a rule, and `= value` where it may be left out.
+/// Defines a group of keys: a struct whose fields are its keys, each with a type, a rule, and `= value` where it may be left out.
+#[macro_export]
+macro_rules! keys {
+    (
+        $(#[doc = $about:literal])+
+        $vis:vis $Name:ident {
+            $($(#[doc = $doc:literal])+ $key:ident : $Type:ty as $Rule:ty $(= $default:expr)?),* $(,)?
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq)]
+        $vis struct $Name { $($(#[doc = $doc])+ pub $key: $Type),* }
+
+        impl $crate::reader::kind::Keys for $Name {
+            fn take_from(object: &$crate::reader::Object<'_>) -> Result<Self, $crate::Failure> {
+                let _ = object;
+                Ok(Self { $($key: <$Rule as $crate::reader::Rule<$Type>>::take(
+                    object,
+                    stringify!($key),
+                    $crate::keys!(@default $Type $(, $default)?),
+                )?),* })
+            }
+
+            fn write_to(&self, object: &mut serde_json::Map<String, serde_json::Value>) {
+                let _ = &object;
+                $(<$Rule as $crate::reader::Rule<$Type>>::put(&self.$key, stringify!($key), object);)*
+            }
+
+            fn keys() -> Vec<$crate::reader::kind::Key> {
+                let keys: Vec<Vec<$crate::reader::kind::Key>> =
+                    vec![$(<$Rule as $crate::reader::Rule<$Type>>::keys(
+                        stringify!($key),
+                        concat!($($doc),+).trim_ascii(),
+                        $crate::keys!(@optional $($default)?),
+                    )),*];
+                keys.into_iter().flatten().collect()
+            }
+        }
+    };
+    (@default $Type:ty) => { None };
+    (@default $Type:ty, $default:expr) => { Some(|| $default) };
+    (@optional) => { false };
+    (@optional $default:expr) => { true };
+}
+
+/// Defines a kind: a group of keys with a name. A last line `check function` says which keys go together.
 ///
 /// ```ignore
 /// kind! {
@@ -158,40 +251,14 @@ pub fn written<K: Kind>(kind: &K) -> Value {
 macro_rules! kind {
     (
         $(#[doc = $about:literal])+
-        $Name:ident = $name:literal {
-            $($(#[doc = $doc:literal])+ $key:ident : $Type:ty as $Rule:ty $(= $default:expr)?),* $(,)?
-        }
+        $Name:ident = $name:literal { $($keys:tt)* }
         $(check $check:expr)?
     ) => {
-        $(#[doc = $about])+
-        #[derive(Clone, Debug, PartialEq)]
-        pub struct $Name { $($(#[doc = $doc])+ pub $key: $Type),* }
+        $crate::keys! { $(#[doc = $about])+ pub $Name { $($keys)* } }
 
         impl $crate::reader::Kind for $Name {
             const NAME: &'static str = $name;
             const ABOUT: &'static str = concat!($($about),+);
-
-            fn take_from(object: &$crate::reader::Object<'_>) -> Result<Self, $crate::Failure> {
-                let _ = object;
-                Ok(Self { $($key: $crate::kind!(@take object, $key, $Type, $Rule $(, $default)?)),* })
-            }
-
-            fn write_to(&self, object: &mut serde_json::Map<String, serde_json::Value>) {
-                let _ = &object;
-                $(object.insert(
-                    stringify!($key).to_owned(),
-                    <$Rule as $crate::reader::Rule<$Type>>::written(&self.$key),
-                );)*
-            }
-
-            fn keys() -> Vec<$crate::reader::kind::Key> {
-                vec![$($crate::reader::kind::Key {
-                    name: stringify!($key),
-                    optional: $crate::kind!(@optional $($default)?),
-                    about: concat!($($doc),+).trim_ascii(),
-                    schema: <$Rule as $crate::reader::Rule<$Type>>::schema(),
-                }),*]
-            }
 
             $(fn check(&self, object: &$crate::reader::Object<'_>) -> Result<(), $crate::Failure> {
                 let check: fn(&Self, &$crate::reader::Object<'_>) -> Result<(), $crate::Failure> = $check;
@@ -199,17 +266,6 @@ macro_rules! kind {
             })?
         }
     };
-    (@take $object:ident, $key:ident, $Type:ty, $Rule:ty) => {
-        <$Rule as $crate::reader::Rule<$Type>>::read(&$object.required(stringify!($key))?)?
-    };
-    (@take $object:ident, $key:ident, $Type:ty, $Rule:ty, $default:expr) => {
-        match $object.optional(stringify!($key)) {
-            Some(node) => <$Rule as $crate::reader::Rule<$Type>>::read(&node)?,
-            None => $default,
-        }
-    };
-    (@optional) => { false };
-    (@optional $default:expr) => { true };
 }
 
 /// Defines the list of all kinds of a thing: an enum, its reader and writer, its names.

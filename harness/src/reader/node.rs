@@ -209,6 +209,11 @@ impl<'a> Node<'a> {
 }
 
 impl<'a> Object<'a> {
+    /// A refusal of the whole object for a reason.
+    pub fn reject(&self, reason: impl std::fmt::Display) -> Failure {
+        Failure::refused(format!("{}: {reason}", self.path))
+    }
+
     /// The value of a key that may be absent.
     pub fn optional(&self, key: &'static str) -> Option<Node<'a>> {
         self.taken.borrow_mut().push(key);

@@ -1,9 +1,10 @@
 //! Rules of keys: what a value may be, how it is read, written and described.
 
-use super::Node;
+use super::kind::Key;
+use super::{Node, Object};
 use crate::Failure;
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
@@ -20,6 +21,28 @@ pub trait Rule<T> {
 
     /// The JSON Schema of all that keeps the rule.
     fn schema() -> Value;
+
+    /// Takes the value of the key `name` from an object.
+    ///
+    /// # Errors
+    /// If the key is missing and has no default, or its value does not keep the rule.
+    fn take(object: &Object<'_>, name: &'static str, default: Option<fn() -> T>) -> Result<T, Failure> {
+        match (object.optional(name), default) {
+            (Some(node), _) => Self::read(&node),
+            (None, Some(default)) => Ok(default()),
+            (None, None) => object.required(name).and_then(|node| Self::read(&node)),
+        }
+    }
+
+    /// Adds the key `name` to an object.
+    fn put(value: &T, name: &'static str, object: &mut Map<String, Value>) {
+        object.insert(name.to_owned(), Self::written(value));
+    }
+
+    /// The key as it is listed.
+    fn keys(name: &'static str, about: &'static str, optional: bool) -> Vec<Key> {
+        vec![Key { name, optional, about, schema: Self::schema() }]
+    }
 }
 
 /// A finite number.

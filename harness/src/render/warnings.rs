@@ -33,8 +33,9 @@ pub(super) fn warnings(
             walk.max_collisions
         ));
     }
-    warnings.extend(spec.integrator.biased_baseline().map(|what| format!("integrator: {what}")));
-    let inside = |light: &LightSpec| matches!(light, LightSpec::Point { position, .. } if plan.bounds.contains(*position));
+    warnings.extend(spec.integrator.kind().bias().map(|what| format!("integrator: {what}")));
+    let inside =
+        |light: &LightSpec| matches!(light, LightSpec::Point(point) if plan.bounds.contains(point.position));
     let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
     if photons && spec.medium.is_some() && plan.bounds.contains(plan.camera.origin()) {
         warnings.push(
@@ -51,9 +52,8 @@ pub(super) fn warnings(
         );
     }
     let connects = matches!(spec.integrator, IntegratorSpec::PathTracer(_) | IntegratorSpec::Vpl(_));
-    let is_smooth = |surface: &SurfaceSpec| !matches!(surface.material, MaterialSpec::Diffuse { .. });
-    let no_extent =
-        |light: &LightSpec| matches!(light, LightSpec::Point { .. } | LightSpec::Directional { .. });
+    let is_smooth = |surface: &SurfaceSpec| !matches!(surface.material, MaterialSpec::Diffuse(_));
+    let no_extent = |light: &LightSpec| matches!(light, LightSpec::Point(_) | LightSpec::Directional(_));
     if connects && spec.surfaces.iter().any(is_smooth) && spec.lights.iter().any(no_extent) {
         warnings.push(
             "light of points and directions that smooth surfaces pass on is missing: no path from the camera meets it by chance, \

@@ -12,7 +12,9 @@ use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::estimator::{EstimatorSpec, Expected, RayKnown};
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::plan::{IntegratorPlan, ScenePlan, Spectra};
-use crate::spec::{IntegratorSpec, SceneSpec, SingleScatteringSpec, VplSpec};
+use crate::spec::{
+    IntegratorSpec, LineSplittingSpec, SceneSpec, SingleScatteringSpec, TransmittanceSpec, VplSpec,
+};
 use crate::{Failure, interrupt};
 use fairflight_media::Bounds;
 use fairflight_paths::SamplingExtinction;
@@ -69,7 +71,7 @@ pub(super) fn check(
 
     let chords = Chords::of(plan)?;
     let (key, lookups) = match &spec.integrator {
-        IntegratorSpec::Transmittance { estimator } => {
+        IntegratorSpec::Transmittance(TransmittanceSpec { estimator }) => {
             ("integrator.estimator", paths * chords.estimate(estimator, 1.0))
         }
         IntegratorSpec::SingleScattering(single) => {
@@ -175,7 +177,7 @@ impl Chords {
         let transport = match integrator {
             IntegratorSpec::PathTracer(spec) => &spec.transport,
             IntegratorSpec::Vpl(spec) => &spec.transport,
-            IntegratorSpec::LineSplitting { majorant, .. } => {
+            IntegratorSpec::LineSplitting(LineSplittingSpec { majorant, .. }) => {
                 return (majorant * self.mean * self.passed).max(1.0);
             }
             _ => {
@@ -235,7 +237,7 @@ impl Walks {
                 scale = f64::from(vpl.eye_samples) / f64::from(vpl.eye_samples.min(EYE_SAMPLES));
                 vpl.eye_samples = vpl.eye_samples.min(EYE_SAMPLES);
             }
-            IntegratorSpec::LineSplitting { splits, .. } => {
+            IntegratorSpec::LineSplitting(LineSplittingSpec { splits, .. }) => {
                 scale = f64::from(*splits) / f64::from((*splits).min(SPLITS));
                 *splits = (*splits).min(SPLITS);
             }

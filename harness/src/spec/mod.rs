@@ -9,7 +9,9 @@ mod scene;
 
 pub use experiment::{Experiment, Overrides, Request, Sweep};
 pub use scene::{
-    ClampSpec, Collisions, ColourSpec, ComponentSpec, IntegratorSpec, LightSpec, MaterialSpec, Particles,
-    PathTracerSpec, PhaseSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeSpec, SingleScatteringSpec,
-    Strategy, SurfaceSpec, TracerSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
+    ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec,
+    IntegratorKind, IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, Particles, PathTracerSpec,
+    PhaseKind, PhaseSpec, PointSpec, RectangleSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind,
+    ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, TracerSpec, TransmittanceSpec,
+    TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };

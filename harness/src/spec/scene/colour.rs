@@ -2,6 +2,8 @@
 
 use crate::Failure;
 use crate::reader::Node;
+use crate::reader::rule::Ruled;
+use serde_json::{Value, json};
 
 /// A gray or coloured quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,5 +47,22 @@ impl ColourSpec {
             Self::Gray(value) => [value; 3],
             Self::Rgb(rgb) => rgb,
         }
+    }
+}
+
+/// A number of at least 0, or three.
+impl Ruled for ColourSpec {
+    fn read(node: &Node<'_>) -> Result<Self, Failure> {
+        Self::read(node, f64::INFINITY)
+    }
+    fn written(&self) -> Value {
+        match self {
+            Self::Gray(value) => json!(value),
+            Self::Rgb(values) => json!(values),
+        }
+    }
+    fn schema() -> Value {
+        let number = json!({ "type": "number", "minimum": 0 });
+        json!({ "anyOf": [number, { "type": "array", "items": number, "minItems": 3, "maxItems": 3 }] })
     }
 }

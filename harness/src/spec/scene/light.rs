@@ -1,79 +1,88 @@
 //! The lights of a scene.
 
 use super::ColourSpec;
-use crate::Failure;
 use crate::reader::Node;
+use crate::reader::rule::{Own, Rule, Text, Vector, vector_schema};
+use crate::{Failure, kind, registry};
 use glam::DVec3;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// A light as given.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightSpec {
+registry! {
+    /// A light that is no surface.
+    LightSpec {
+        Environment(EnvironmentSpec),
+        EnvironmentMap(EnvironmentMapSpec),
+        Point(PointSpec),
+        Directional(DirectionalSpec),
+    }
+}
+
+kind! {
     /// The same radiance from everywhere.
-    Environment {
-        /// \[radiance\]
-        radiance: ColourSpec,
-    },
-    /// A picture of latitude and longitude.
-    EnvironmentMap {
-        /// .exr or .pfm
-        file: PathBuf,
-    },
-    /// Shines into all directions alike.
-    Point {
-        /// Where.
-        position: DVec3,
-        /// \[power\]
-        power: ColourSpec,
-    },
-    /// Parallel light.
-    Directional {
-        /// The direction of travel of its light, of any length but 0.
-        direction: DVec3,
-        /// Power per area across that direction.
-        irradiance: ColourSpec,
-    },
+    EnvironmentSpec = "environment" {
+        /// The radiance.
+        radiance: ColourSpec as Own,
+    }
+}
+
+kind! {
+    /// Radiance from a picture, latitude and longitude.
+    EnvironmentMapSpec = "environment_map" {
+        /// The picture, .exr or .pfm.
+        file: PathBuf as Text,
+    }
+}
+
+kind! {
+    /// The same intensity into all directions, from a point.
+    PointSpec = "point" {
+        /// The point.
+        position: DVec3 as Vector,
+        /// The power.
+        power: ColourSpec as Own,
+    }
+}
+
+kind! {
+    /// Parallel light from infinitely far away.
+    DirectionalSpec = "directional" {
+        /// The direction in which it travels.
+        direction: DVec3 as Sight,
+        /// The irradiance of a plane that it meets at a right angle.
+        irradiance: ColourSpec as Own,
+    }
+}
+
+/// Three numbers that can be normalised.
+#[derive(Debug)]
+pub(super) struct Sight;
+
+impl Rule<DVec3> for Sight {
+    fn read(node: &Node<'_>) -> Result<DVec3, Failure> {
+        let vector = node.vector()?;
+        if vector.try_normalize().is_none() {
+            return Err(node.refuse("must not be zero"));
+        }
+        Ok(vector)
+    }
+    fn written(value: &DVec3) -> Value {
+        json!(value.to_array())
+    }
+    fn schema() -> Value {
+        vector_schema()
+    }
 }
 
 impl LightSpec {
-    /// Reads one of `lights`.
-    ///
-    /// # Errors
-    /// If a key is missing, unknown or of the wrong kind.
-    pub fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        let object = node.object()?;
-        let kind = object.required("kind")?;
-        let strength = |key| ColourSpec::read(&object.required(key)?, f64::INFINITY);
-        let light = match kind.text()? {
-            "environment" => Self::Environment { radiance: strength("radiance")? },
-            "environment_map" => {
-                Self::EnvironmentMap { file: PathBuf::from(object.required("file")?.text()?) }
-            }
-            "point" => {
-                Self::Point { position: object.required("position")?.vector()?, power: strength("power")? }
-            }
-            "directional" => {
-                let direction = object.required("direction")?;
-                let vector = direction.vector()?;
-                if vector.try_normalize().is_none() {
-                    return Err(direction.refuse("must not be zero"));
-                }
-                Self::Directional { direction: vector, irradiance: strength("irradiance")? }
-            }
-            _ => return Err(kind.refuse("must be environment, environment_map, point or directional")),
-        };
-        object.finish()?;
-        Ok(light)
-    }
-
-    /// How strong it is, but for a picture.
+    /// Its strength; `None` where a picture says it.
     #[must_use]
     pub fn strength(&self) -> Option<&ColourSpec> {
         match self {
-            Self::Environment { radiance } => Some(radiance),
-            Self::EnvironmentMap { .. } => None,
-            Self::Point { power, .. } => Some(power),
-            Self::Directional { irradiance, .. } => Some(irradiance),
+            Self::Environment(light) => Some(&light.radiance),
+            Self::EnvironmentMap(_) => None,
+            Self::Point(light) => Some(&light.power),
+            Self::Directional(light) => Some(&light.irradiance),
         }
     }
 }

@@ -4,19 +4,20 @@ mod camera;
 mod colour;
 mod integrator;
 mod light;
+mod phase;
 mod surface;
-mod virtual_lights;
 mod volume;
 
 pub use colour::ColourSpec;
 pub use integrator::{
-    Collisions, IntegratorSpec, Particles, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec,
-    WalkSpec,
+    ClampSpec, Collisions, ComponentSpec, IntegratorKind, IntegratorSpec, LineSplittingSpec, Particles,
+    PathTracerSpec, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec, TransmittanceSpec,
+    TransportSpec, VplSpec, WalkSpec,
 };
-pub use light::LightSpec;
-pub use surface::{MaterialSpec, ShapeSpec, SurfaceSpec};
-pub use virtual_lights::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
-pub use volume::{PhaseSpec, VolumeSpec};
+pub use light::{DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec, LightSpec, PointSpec};
+pub use phase::{PhaseKind, PhaseSpec};
+pub use surface::{MaterialSpec, RectangleSpec, ShapeKind, ShapeSpec, SphereSpec, SurfaceSpec};
+pub use volume::VolumeSpec;
 
 use crate::Failure;
 use crate::reader::Node;

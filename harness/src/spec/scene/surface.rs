@@ -1,8 +1,9 @@
 //! The surfaces of a scene.
 
 use super::ColourSpec;
-use crate::Failure;
-use crate::reader::Node;
+use crate::reader::rule::{Own, Positive, Ruled, Vector};
+use crate::reader::{Node, Object};
+use crate::{Failure, kind, registry};
 use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{SceneError, Shape};
 use glam::DVec3;
@@ -10,50 +11,89 @@ use glam::DVec3;
 /// A surface as given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceSpec {
-    /// Where it is.
+    /// Its shape.
     pub shape: ShapeSpec,
-    /// What it does with light.
+    /// The material.
     pub material: MaterialSpec,
     /// The radiance that it emits from both sides; 0 without the key.
     pub emission: ColourSpec,
 }
 
-/// A shape as given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ShapeSpec {
-    /// A parallelogram.
-    Rectangle {
-        /// One of its corners.
-        corner: DVec3,
-        /// From there to a neighbour.
-        edge_u: DVec3,
-        /// From there to the other one.
-        edge_v: DVec3,
-    },
-    /// A sphere.
-    Sphere {
-        /// Its center.
-        center: DVec3,
-        /// Its radius \[length\], above 0.
-        radius: f64,
-    },
+registry! {
+    /// The shape of a surface.
+    ShapeSpec: ShapeKind {
+        Rectangle(RectangleSpec),
+        Sphere(SphereSpec),
+    }
 }
 
-/// A material as given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MaterialSpec {
+registry! {
+    /// The material of a surface.
+    MaterialSpec {
+        Diffuse(DiffuseSpec),
+        Mirror(MirrorSpec),
+        Dielectric(DielectricSpec),
+    }
+}
+
+/// What the harness knows of a kind of shapes beside its keys.
+pub trait ShapeKind {
+    /// The shape.
+    ///
+    /// # Errors
+    /// If it is degenerate.
+    fn build(&self) -> Result<Shape, SceneError>;
+
+    /// Points whose convex hull holds the shape, as far as it has such; a ball has none.
+    fn corners(&self) -> Option<[DVec3; 4]>;
+
+    /// The ball that it is, if it is one: centre and radius.
+    fn ball(&self) -> Option<(DVec3, f64)>;
+}
+
+kind! {
+    /// A parallelogram.
+    RectangleSpec = "rectangle" {
+        /// One of its corners.
+        corner: DVec3 as Vector,
+        /// From there to a neighbour.
+        edge_u: DVec3 as Vector,
+        /// From there to the other one.
+        edge_v: DVec3 as Vector,
+    }
+    check RectangleSpec::check
+}
+
+kind! {
+    /// A sphere.
+    SphereSpec = "sphere" {
+        /// Its centre.
+        center: DVec3 as Vector,
+        /// Its radius \[length\].
+        radius: f64 as Positive,
+    }
+    check |sphere: &SphereSpec, object| sphere.build().map(|_| ()).map_err(|error| object.reject(error))
+}
+
+kind! {
     /// Lambert.
-    Diffuse {
-        /// Above 1 only with `allow_gain`.
-        reflectance: ColourSpec,
-    },
+    DiffuseSpec = "diffuse" {
+        /// The share of light that is reflected; above 1 only with `allow_gain`.
+        reflectance: ColourSpec as Own,
+    }
+}
+
+kind! {
     /// All light, into one direction.
-    Mirror,
+    MirrorSpec = "mirror" {}
+}
+
+kind! {
     /// A smooth interface.
-    Dielectric {
-        /// Index of refraction of the inner side, above 0.
-        ior: f64,
-    },
+    DielectricSpec = "dielectric" {
+        /// The index of refraction of the inner side.
+        ior: f64 as Positive,
+    }
 }
 
 impl SurfaceSpec {
@@ -63,28 +103,14 @@ impl SurfaceSpec {
     /// If a key is missing, unknown or of the wrong kind, or the shape is degenerate.
     pub fn read(node: &Node<'_>, allow_gain: bool) -> Result<Self, Failure> {
         let object = node.object()?;
-        let kind = object.required("kind")?;
-        let shape = match kind.text()? {
-            "rectangle" => {
-                let corner = object.required("corner")?.vector()?;
-                let (edge_u, edge_v) = (object.required("edge_u")?, object.required("edge_v")?);
-                let shape =
-                    ShapeSpec::Rectangle { corner, edge_u: edge_u.vector()?, edge_v: edge_v.vector()? };
-                shape.build().map_err(|error| refuse_rectangle(node, [&edge_u, &edge_v], &error))?;
-                shape
-            }
-            "sphere" => {
-                let center = object.required("center")?.vector()?;
-                let shape = ShapeSpec::Sphere { center, radius: object.required("radius")?.positive()? };
-                shape.build().map_err(|error| node.reject(error))?;
-                shape
-            }
-            _ => return Err(kind.refuse("must be rectangle or sphere")),
-        };
-        let material = MaterialSpec::read(&object.required("material")?, allow_gain)?;
-        let emission = object
-            .optional("emission")
-            .map_or(Ok(ColourSpec::Gray(0.0)), |node| ColourSpec::read(&node, f64::INFINITY))?;
+        let shape = ShapeSpec::take(&object)?;
+        let given = object.required("material")?;
+        let material = MaterialSpec::read(&given)?;
+        if let (MaterialSpec::Diffuse(_), false) = (&material, allow_gain) {
+            ColourSpec::read(&given.at("reflectance")?, 1.0)?;
+        }
+        let emission = object.optional("emission").map(|node| <ColourSpec as Ruled>::read(&node));
+        let emission = emission.unwrap_or(Ok(ColourSpec::Gray(0.0)))?;
         object.finish()?;
         Ok(Self { shape, material, emission })
     }
@@ -99,77 +125,69 @@ impl SurfaceSpec {
     #[must_use]
     pub fn is_gray(&self) -> bool {
         let reflects_gray = match &self.material {
-            MaterialSpec::Diffuse { reflectance } => reflectance.is_gray(),
-            MaterialSpec::Mirror | MaterialSpec::Dielectric { .. } => true,
+            MaterialSpec::Diffuse(material) => material.reflectance.is_gray(),
+            MaterialSpec::Mirror(_) | MaterialSpec::Dielectric(_) => true,
         };
         reflects_gray && self.emission.is_gray()
     }
 }
 
-/// The edge that is to blame, as far as one is.
-fn refuse_rectangle(node: &Node<'_>, [edge_u, edge_v]: [&Node<'_>; 2], error: &SceneError) -> Failure {
-    match error {
-        SceneError::Degenerate { what: "edge_u", because } => edge_u.refuse(format!("must not be {because}")),
-        SceneError::Degenerate { what: "edge_v", because } => edge_v.refuse(format!("must not be {because}")),
-        _ => node.reject(error),
+impl RectangleSpec {
+    /// Blames the edge that is degenerate, as far as one is.
+    fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
+        let Err(error) = self.build() else { return Ok(()) };
+        Err(match &error {
+            SceneError::Degenerate { what: what @ ("edge_u" | "edge_v"), because } => {
+                let key = if *what == "edge_u" { "edge_u" } else { "edge_v" };
+                object.required(key)?.refuse(format!("must not be {because}"))
+            }
+            _ => object.reject(error),
+        })
+    }
+}
+
+impl ShapeKind for RectangleSpec {
+    fn build(&self) -> Result<Shape, SceneError> {
+        Rectangle::new(self.corner, self.edge_u, self.edge_v).map(Shape::Rectangle)
+    }
+    fn corners(&self) -> Option<[DVec3; 4]> {
+        let &Self { corner, edge_u, edge_v } = self;
+        Some([corner, corner + edge_u, corner + edge_v, corner + edge_u + edge_v])
+    }
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        None
+    }
+}
+
+impl ShapeKind for SphereSpec {
+    fn build(&self) -> Result<Shape, SceneError> {
+        Sphere::new(self.center, self.radius).map(Shape::Sphere)
+    }
+    fn corners(&self) -> Option<[DVec3; 4]> {
+        None
+    }
+    fn ball(&self) -> Option<(DVec3, f64)> {
+        Some((self.center, self.radius))
     }
 }
 
 impl ShapeSpec {
-    /// The shape.
-    ///
-    /// # Errors
-    /// If it is degenerate.
-    pub fn build(&self) -> Result<Shape, SceneError> {
-        Ok(match *self {
-            Self::Rectangle { corner, edge_u, edge_v } => {
-                Shape::Rectangle(Rectangle::new(corner, edge_u, edge_v)?)
-            }
-            Self::Sphere { center, radius } => Shape::Sphere(Sphere::new(center, radius)?),
-        })
-    }
-
-    /// Whether it is a sphere with `point` strictly inside; nothing lies inside a rectangle.
+    /// Whether it is a ball with `point` strictly inside; nothing lies inside a rectangle.
     #[must_use]
     pub fn encloses(&self, point: DVec3) -> bool {
-        match *self {
-            Self::Rectangle { .. } => false,
-            Self::Sphere { center, radius } => center.distance(point) < radius,
-        }
+        self.kind().ball().is_some_and(|(center, radius)| center.distance(point) < radius)
     }
 
-    /// Whether it is a sphere with all of `other` strictly inside.
+    /// Whether it is a ball with all of `other` strictly inside.
     #[must_use]
     pub fn encloses_all_of(&self, other: &Self) -> bool {
-        match (*self, *other) {
-            (Self::Rectangle { .. }, _) => false,
+        let Some((center, radius)) = self.kind().ball() else { return false };
+        match (other.kind().corners(), other.kind().ball()) {
             // A ball is convex: the corners tell.
-            (_, Self::Rectangle { corner, edge_u, edge_v }) => {
-                let corners = [corner, corner + edge_u, corner + edge_v, corner + edge_u + edge_v];
-                corners.into_iter().all(|corner| self.encloses(corner))
-            }
-            (Self::Sphere { center, radius }, Self::Sphere { center: inner, radius: inner_radius }) => {
-                center.distance(inner) + inner_radius < radius
-            }
+            (Some(corners), _) => corners.into_iter().all(|corner| self.encloses(corner)),
+            (None, Some((inner, inner_radius))) => center.distance(inner) + inner_radius < radius,
+            (None, None) => false,
         }
-    }
-}
-
-impl MaterialSpec {
-    fn read(node: &Node<'_>, allow_gain: bool) -> Result<Self, Failure> {
-        let object = node.object()?;
-        let kind = object.required("kind")?;
-        let material = match kind.text()? {
-            "diffuse" => {
-                let most = if allow_gain { f64::INFINITY } else { 1.0 };
-                Self::Diffuse { reflectance: ColourSpec::read(&object.required("reflectance")?, most)? }
-            }
-            "mirror" => Self::Mirror,
-            "dielectric" => Self::Dielectric { ior: object.required("ior")?.positive()? },
-            _ => return Err(kind.refuse("must be diffuse, mirror or dielectric")),
-        };
-        object.finish()?;
-        Ok(material)
     }
 }
 
@@ -178,7 +196,7 @@ mod tests {
     use super::*;
 
     fn sphere(x: f64, radius: f64) -> ShapeSpec {
-        ShapeSpec::Sphere { center: DVec3::X * x, radius }
+        SphereSpec { center: DVec3::X * x, radius }.into()
     }
 
     #[test]
@@ -188,10 +206,9 @@ mod tests {
         assert!(ball.encloses_all_of(&sphere(2.0, 0.9)) && !ball.encloses_all_of(&sphere(2.0, 1.0)));
         // Around it, not inside.
         assert!(!sphere(2.0, 0.9).encloses_all_of(&ball) && !ball.encloses_all_of(&ball));
-        let square = |side: f64| ShapeSpec::Rectangle {
-            corner: DVec3::X,
-            edge_u: DVec3::Y * side,
-            edge_v: DVec3::Z * side,
+        let square = |side: f64| {
+            let (edge_u, edge_v) = (DVec3::Y * side, DVec3::Z * side);
+            ShapeSpec::from(RectangleSpec { corner: DVec3::X, edge_u, edge_v })
         };
         // The far corner lies √2 sides away.
         assert!(ball.encloses_all_of(&square(1.41)) && !ball.encloses_all_of(&square(1.42)));

@@ -1,0 +1,79 @@
+//! Integrators: one file per kind, with its keys; the list of all.
+
+mod line_splitting;
+mod particle_tracer;
+mod path_tracer;
+mod single_scattering;
+mod transmittance;
+mod transport;
+mod vpl;
+mod walk;
+
+pub use line_splitting::LineSplittingSpec;
+pub use particle_tracer::{Particles, TracerSpec};
+pub use path_tracer::PathTracerSpec;
+pub use single_scattering::{SingleScatteringSpec, Strategy};
+pub use transmittance::TransmittanceSpec;
+pub use transport::TransportSpec;
+pub use vpl::{ClampSpec, ComponentSpec, VplSpec};
+pub use walk::{Collisions, SamplingFieldSpec, WalkSpec};
+
+use crate::registry;
+
+registry! {
+    /// An integrator with its parameters.
+    IntegratorSpec: IntegratorKind {
+        Transmittance(TransmittanceSpec),
+        ParticleTracer(TracerSpec),
+        LineSplitting(LineSplittingSpec),
+        SingleScattering(SingleScatteringSpec),
+        PathTracer(PathTracerSpec),
+        Vpl(VplSpec),
+    }
+}
+
+/// What the harness knows of a kind of integrators beside its keys.
+pub trait IntegratorKind {
+    /// Its walks, if it has some.
+    fn walk(&self) -> Option<&WalkSpec> {
+        None
+    }
+
+    /// Whether it takes account of surfaces.
+    fn knows_surfaces(&self) -> bool {
+        false
+    }
+
+    /// What is biased by design, if anything is.
+    fn bias(&self) -> Option<&'static str> {
+        None
+    }
+}
+
+/// More points per ray, flights or pixels per control are a slip of the keyboard.
+const MOST: u64 = 1_000_000;
+
+const BASELINE: &str = "its estimator of transmittance is a biased baseline";
+
+fn of_a_baseline(is_biased: bool) -> Option<&'static str> {
+    is_biased.then_some(BASELINE)
+}
+
+impl IntegratorSpec {
+    /// The walks of an integrator that has some.
+    #[must_use]
+    pub fn walk(&self) -> Option<&WalkSpec> {
+        self.kind().walk()
+    }
+
+    /// The walks of an integrator that has some, to be changed.
+    pub fn walk_mut(&mut self) -> Option<&mut WalkSpec> {
+        match self {
+            Self::ParticleTracer(spec) => Some(&mut spec.walk),
+            Self::LineSplitting(spec) => Some(&mut spec.walk),
+            Self::PathTracer(spec) => Some(&mut spec.transport.walk),
+            Self::Vpl(spec) => Some(&mut spec.transport.walk),
+            Self::Transmittance(_) | Self::SingleScattering(_) => None,
+        }
+    }
+}

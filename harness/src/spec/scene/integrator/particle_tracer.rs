@@ -1,0 +1,39 @@
+//! Particle tracing.
+
+use super::IntegratorKind;
+use super::walk::WalkSpec;
+use crate::reader::kind::Among;
+use crate::{kind, words};
+
+kind! {
+    /// Walks of particles (szirmay-kalos-2017 section 4.1).
+    TracerSpec = "particle_tracer" {
+        /// How they walk.
+        walk: WalkSpec as Among,
+        /// Which particles walk.
+        particles: Particles as ParticlesWord = Particles::Importons,
+    }
+}
+
+/// Which particles walk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Particles {
+    /// From the camera.
+    Importons,
+    /// From the lights.
+    Photons,
+}
+
+words! {
+    /// Which particles walk.
+    pub(super) ParticlesWord for Particles {
+        "importons" => Particles::Importons,
+        "photons" => Particles::Photons,
+    }
+}
+
+impl IntegratorKind for TracerSpec {
+    fn walk(&self) -> Option<&WalkSpec> {
+        Some(&self.walk)
+    }
+}
