@@ -28,8 +28,18 @@ pub(crate) enum Command {
     Render(RenderArguments),
     /// Check all laws over all estimators, media and hard cases; exit code 1 if one fails
     Verify(VerifyArguments),
-    /// List reports, profiles, media, estimators and controls
+    /// List reports, and all kinds of profiles, media, estimators, integrators and parts of scenes with their keys
     List,
+    /// Print the JSON Schema of experiments and scenes: with it editors check and complete them
+    Schema(SchemaArguments),
+}
+
+/// Arguments of `schema`.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct SchemaArguments {
+    /// The kinds and their keys as Markdown tables instead
+    #[arg(long)]
+    pub tables: bool,
 }
 
 /// Arguments of `report`.

@@ -11,7 +11,7 @@ mod cli;
 mod environment;
 mod estimate;
 mod failure;
-mod list;
+
 mod render;
 mod verify;
 
@@ -29,6 +29,7 @@ pub mod reference;
 pub mod report;
 pub mod result;
 pub mod spec;
+pub mod vocabulary;
 
 pub use environment::{Environment, Terminal};
 pub use failure::{DONE, Failure, INTERRUPTED, NOT_WRITTEN, REFUSED, UNSOUND};
@@ -59,7 +60,8 @@ pub fn run(
         Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
-        Some(Command::List) => list::run(stdout),
+        Some(Command::List) => vocabulary::list(stdout),
+        Some(Command::Schema(arguments)) => vocabulary::print_schema(arguments, stdout),
         Some(Command::Report(arguments)) => report::command::run(&arguments, &environment, stderr),
         None => report::command::run(&ReportArguments::default(), &environment, stderr),
     };

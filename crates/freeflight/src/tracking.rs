@@ -271,4 +271,23 @@ mod tests {
             assert!(flight.weight().is_nan(), "{version:?}: {flight:?}");
         }
     }
+
+    /// r = σ_t/σ_samp passes 1 at s = 0.37, between the nodes of any panel that does not end there: told or found, the moments are the same.
+    #[test]
+    fn kinks_are_found() {
+        let field = fairflight_media::PiecewiseLinear::new(vec![0.0, 1.0], vec![0.0, 1.0]).unwrap();
+        for version in [Version::NonTerminating, Version::Adaptive] {
+            let tracking = Tracking::new(version, constant(0.37));
+            let moments = |told: &[f64]| {
+                let mut quadrature = RayQuadrature::new(&field, told);
+                let collided = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value;
+                (collided, tracking.escaped(&mut quadrature, Tolerance::TIGHT))
+            };
+            let (found, told) = (moments(&[]), moments(&[0.37]));
+            for k in 0..4 {
+                assert_relative_eq!(found.0[k], told.0[k], max_relative = 1e-12);
+                assert_relative_eq!(found.1[k], told.1[k], max_relative = 1e-12);
+            }
+        }
+    }
 }

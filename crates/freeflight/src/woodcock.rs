@@ -118,4 +118,12 @@ mod tests {
         let found = woodcock.lookups(&mut empty, Tolerance::TIGHT).unwrap();
         assert!((found[0] - 4.0).abs() < 1e-12 && (found[1] - 20.0).abs() < 1e-11);
     }
+
+    #[test]
+    fn it_admits_what_lies_between_nothing_and_its_majorant() {
+        let woodcock = Woodcock::new(Constant::new(2.0, 1.0).unwrap());
+        let field = Constant::new(1.0, 1.0).unwrap();
+        let admitted = [-0.1, 0.0, 2.0, 2.1, f64::NAN].map(|sigma_t| woodcock.admits(&field, 0.5, sigma_t));
+        assert_eq!(admitted, [false, true, true, false, false]);
+    }
 }

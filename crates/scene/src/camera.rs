@@ -219,4 +219,11 @@ mod tests {
         assert!(matches!(new(DVec3::Z, DVec3::Y, 60.0, [0, 1]), Err(SceneError::NoPixels { .. })));
         assert!(matches!(new(DVec3::INFINITY, DVec3::Y, 60.0, [1, 1]), Err(SceneError::NotFinite { .. })));
     }
+
+    #[test]
+    fn rays_begin_at_the_pinhole() {
+        let pinhole = dvec3(1.0, 2.0, 3.0);
+        let camera = Camera::new(pinhole, DVec3::ZERO, DVec3::Y, 60.0, [4, 3]).unwrap();
+        assert_eq!((camera.origin(), camera.ray([1, 2], [0.3, 0.4]).origin), (pinhole, pinhole));
+    }
 }

@@ -129,3 +129,13 @@ impl Spectrum for DVec3 {
         Self::from_array(rgb)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_channels() {
+        assert_eq!((2.5.mean(), DVec3::new(1.0, 2.0, 6.0).mean()), (2.5, 3.0));
+    }
+}

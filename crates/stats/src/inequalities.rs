@@ -327,4 +327,20 @@ mod tests {
             assert!((rejected as f64) < level * f64::from(replicas), "{rare}: {rejected}");
         }
     }
+
+    /// Nothing depends on the unit of the estimates.
+    #[test]
+    fn it_is_the_same_in_every_unit() {
+        let sample: Vec<f64> = uniforms(5).take(2000).map(|u| 1.2 + 3f64.sqrt() * (2.0 * u - 1.0)).collect();
+        let of = |unit: f64| {
+            let moments: Moments = sample.iter().map(|x| unit * x).collect();
+            let reference = Reference { variance_bound: Some(unit * unit), ..Reference::exact(unit) };
+            p_of(&moments, &reference)
+        };
+        let usual = of(1.0);
+        assert!(usual > 0.0 && usual < 1e-3, "{usual}");
+        for unit in [2f64.powi(-30), 2f64.powi(-3), 2f64.powi(20)] {
+            assert!((of(unit) / usual - 1.0).abs() < 1e-6, "{unit}: {} and {usual}", of(unit));
+        }
+    }
 }

@@ -133,3 +133,20 @@ fn sums_about_any_point() {
     }
     assert_eq!(Moments::new().sums_about(1.0), None);
 }
+
+#[test]
+fn a_block_knows_its_least_and_its_greatest_value() {
+    // Wherever they stand: first, last, in any lane.
+    for length in [1, 2, 7, 8, 9, 40] {
+        for place in 0..length {
+            let with = |x: f64| {
+                let values: Vec<f64> = (0..length).map(|i| if i == place { x } else { 1.0 }).collect();
+                let moments = Moments::from_slice(&values);
+                (moments.minimum(), moments.maximum())
+            };
+            let others: [f64; 2] = if length == 1 { [5.0, -5.0] } else { [1.0, 1.0] };
+            assert_eq!(with(5.0), (Some(others[0].min(5.0)), Some(5.0)), "{length} {place}");
+            assert_eq!(with(-5.0), (Some(-5.0), Some(others[1].max(-5.0))), "{length} {place}");
+        }
+    }
+}

@@ -274,3 +274,13 @@ fn mild_tails_let_a_sample_reject_by_its_own_error() {
     assert_eq!(judge(&measured, &right.with_mild_tails(), 1e-6).sound, Some(true));
     assert_eq!(judge(&measured, &wrong.with_mild_tails(), 1e-6).sound, Some(false));
 }
+
+/// 26 % of a million are far from 30 %, but within an error of five percent; 24 % are not.
+#[test]
+fn the_error_of_a_probability_is_granted_on_both_sides() {
+    let reference = Reference { error: 0.05, ..two_valued(0.3) };
+    for (share, agrees) in [(0.24, false), (0.26, true), (0.34, true), (0.36, false)] {
+        let verdict = judge(&counts(1_000_000, (1e6 * share) as u64, 1.0), &reference, ALPHA);
+        assert_eq!(verdict.sound != Some(false), agrees, "{share}: {}", verdict.reason);
+    }
+}

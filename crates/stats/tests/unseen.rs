@@ -113,3 +113,11 @@ fn an_estimated_reference_decides_nothing_but_by_its_bounds() {
         assert_eq!(verdict.sound, sound, "[{low}, {high}]: {}", verdict.reason);
     }
 }
+
+#[test]
+fn the_bounds_of_an_estimated_mean_are_told_as_shares_of_it() {
+    let certainty = Certainty::Estimated { low: 0.5, high: 3.0 };
+    let reference = Reference { certainty, ..Reference::exact(2.0) };
+    let verdict = judge(&exponential(1000, 2.0), &reference, ALPHA);
+    assert!(verdict.reason.contains("between 2.500e-1 and 1.500e0 of it"), "{}", verdict.reason);
+}

@@ -17,6 +17,27 @@ pub struct Key {
     pub schema: Value,
 }
 
+impl Key {
+    /// A key that must be there.
+    #[must_use]
+    pub fn required(name: &'static str, about: &'static str, schema: Value) -> Self {
+        Self { name, optional: false, about, schema }
+    }
+
+    /// A key that may be left out.
+    #[must_use]
+    pub fn optional(name: &'static str, about: &'static str, schema: Value) -> Self {
+        Self { name, optional: true, about, schema }
+    }
+
+    /// The words that it takes, where it takes words only.
+    #[must_use]
+    pub fn words(&self) -> Option<String> {
+        let words = self.schema.get("enum")?.as_array()?;
+        Some(words.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", "))
+    }
+}
+
 /// A group of keys.
 pub trait Keys: Sized {
     /// Takes the keys from an object.
@@ -85,7 +106,11 @@ pub fn group_schema<T: Keys>() -> Value {
 }
 
 /// The JSON Schema of an object with some properties, and keys beside them.
-fn object_schema(mut properties: Map<String, Value>, keys: &[Key], mut required: Vec<&str>) -> Value {
+pub(crate) fn object_schema(
+    mut properties: Map<String, Value>,
+    keys: &[Key],
+    mut required: Vec<&str>,
+) -> Value {
     for key in keys {
         let mut schema = key.schema.clone();
         if let Value::Object(map) = &mut schema {
@@ -121,6 +146,13 @@ impl Listed {
     #[must_use]
     pub fn of<K: Kind>() -> Self {
         Self { name: K::NAME, about: K::ABOUT.trim(), keys: K::keys() }
+    }
+
+    /// The same kind with keys beside its own.
+    #[must_use]
+    pub fn with(mut self, keys: Vec<Key>) -> Self {
+        self.keys.extend(keys);
+        self
     }
 
     /// The keys as words: those that may be left out in brackets.

@@ -229,6 +229,17 @@ impl<'a> Object<'a> {
             .ok_or_else(|| Failure::refused(format!("{}: this key is missing", join(&self.path, key))))
     }
 
+    /// Refuses every key that was not taken, but for `$schema`: with it editors check and complete a file.
+    ///
+    /// # Errors
+    /// If there is one.
+    pub fn finish_root(self) -> Result<(), Failure> {
+        if self.map.contains_key("$schema") {
+            self.taken.borrow_mut().push("$schema");
+        }
+        self.finish()
+    }
+
     /// Refuses every key that was not taken.
     ///
     /// # Errors

@@ -119,7 +119,7 @@ impl Experiment {
             samples,
             seed,
         };
-        root.finish()?;
+        root.finish_root()?;
         Ok(experiment)
     }
 }

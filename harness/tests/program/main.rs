@@ -16,3 +16,4 @@ mod report;
 mod surfaces;
 mod verdicts;
 mod virtual_lights;
+mod vocabulary;

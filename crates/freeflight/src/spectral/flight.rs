@@ -147,4 +147,11 @@ mod tests {
         assert_eq!([0.0, 0.9, LARGEST_VARIATE].map(|u| picked([0.0, -3.0, 0.0], u)), [1; 3]);
         assert_eq!(picked([0.1, 0.2, 0.0], LARGEST_VARIATE), 1);
     }
+
+    /// u lies in [0, 1/4) for the first of 1 and 3: the border belongs to the second.
+    #[test]
+    fn the_border_belongs_to_the_next() {
+        let picked = |u: f64| pick(&[1.0, 3.0], &mut Scripted::new([u]));
+        assert_eq!([0.25 - 2f64.powi(-53), 0.25].map(picked), [0, 1]);
+    }
 }

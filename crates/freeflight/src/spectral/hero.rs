@@ -300,4 +300,15 @@ mod tests {
             assert!(flight.weights().iter().all(|weight| weight.is_finite()), "{sigma}: {flight:?}");
         }
     }
+
+    #[test]
+    fn the_mean_weight_of_an_escape_is_the_transmittance() {
+        let field = Scaled::new(constant(1.0), [0.5, 0.25]).unwrap();
+        for (l, sigma_t) in [0.5_f64, 0.25].into_iter().enumerate() {
+            let mut quadrature = RayQuadrature::new(Wavelength::new(&field, l).unwrap(), &[]);
+            let escaped = HeroWavelength::new(constant(1.0)).escaped(&mut quadrature, Tolerance::TIGHT);
+            assert_relative_eq!(escaped[0], (-sigma_t).exp(), max_relative = 1e-12);
+            assert!(escaped[1..].iter().all(|moment| moment.is_nan()));
+        }
+    }
 }

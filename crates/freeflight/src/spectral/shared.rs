@@ -176,4 +176,16 @@ mod tests {
             assert_relative_eq!(found, covered / ratio, max_relative = 1e-10);
         }
     }
+
+    /// A flight of the rate 2 escapes a length of 1 with e^−2, and weighs e for a wavelength of σ_t = 1: M_k = e^(k − 2).
+    #[test]
+    fn the_moments_of_an_escape_by_hand() {
+        let constant = |sigma| Constant::new(sigma, 1.0).unwrap();
+        let field = Scaled::new(constant(1.0), [1.0, 2.0]).unwrap();
+        let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).unwrap(), &[]);
+        let escaped = SharedDistance::new(constant(2.0)).escaped(&mut quadrature, Tolerance::TIGHT);
+        for (k, found) in (1..).zip(escaped) {
+            assert_relative_eq!(found, f64::from(k - 2).exp(), max_relative = 1e-12);
+        }
+    }
 }

@@ -212,4 +212,18 @@ mod tests {
         let integral = RULE.integrate(&values, 1.0);
         assert!((integral.value - exact).abs() <= integral.error);
     }
+
+    /// QUADPACK's estimate where it is all spread: of values that are 1 at one node of weight w, which the Gauss rule lacks, the mean is
+    /// w/2, the spread w (1 − w/2) + (2 − w) w/2, and the difference of the rules w.
+    #[test]
+    fn the_error_of_one_value_by_hand() {
+        for i in (0..NODES).filter(|&i| RULE.gauss[i] == 0.0) {
+            let mut values = [0.0; NODES];
+            values[i] = 1.0;
+            let w = RULE.kronrod[i];
+            let found = RULE.integrate(&values, 0.5);
+            assert!((found.value - 0.5 * w).abs() < 1e-16);
+            assert!((found.error - 0.5 * w * (2.0 - w)).abs() < 1e-15, "{i}: {}", found.error);
+        }
+    }
 }

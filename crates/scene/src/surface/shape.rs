@@ -148,3 +148,17 @@ impl Shape {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sphere_has_an_inside_and_a_rectangle_none() {
+        let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 2.0).unwrap());
+        let rectangle =
+            Shape::Rectangle(Rectangle::new(-DVec3::ONE, 2.0 * DVec3::X, 2.0 * DVec3::Y).unwrap());
+        assert_eq!([sphere, rectangle].map(|shape| shape.is_closed()), [true, false]);
+        assert_eq!([sphere, rectangle].map(|shape| shape.encloses(DVec3::ZERO)), [true, false]);
+    }
+}

@@ -78,7 +78,7 @@ impl SceneSpec {
         let most = u64::from(u32::MAX);
         let samples = or_override("samples_per_pixel", 1, most, overrides.samples_per_pixel.map(u64::from))?;
         let seed = or_override("seed", 0, u64::MAX, overrides.seed)?;
-        root.finish()?;
+        root.finish_root()?;
         Ok(Self { camera, medium, lights, surfaces, integrator, samples_per_pixel: samples as u32, seed })
     }
 
