@@ -5,30 +5,36 @@ use crate::result::Provenance;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ffi::OsString;
 
-/// What the program may assume about the terminal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Terminal {
+/// The program that runs the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Host {
     /// Standard error is a terminal: progress bars are drawn.
     pub progress: bool,
+    /// The revision of the checkout that the program was built from, with a word about changes; the version where there was none.
+    pub revision: &'static str,
+}
+
+/// No terminal, no checkout.
+impl Default for Host {
+    fn default() -> Self {
+        Self { progress: false, revision: concat!("v", env!("CARGO_PKG_VERSION")) }
+    }
 }
 
 /// The run's surroundings.
 #[derive(Clone, Debug)]
 pub struct Environment {
     command: String,
-    terminal: Terminal,
+    host: Host,
 }
-
-/// The revision of the checkout that the program was built from; the version where there was none.
-const REVISION: &str = env!("FAIRFLIGHT_REVISION");
 
 impl Environment {
     /// The surroundings of a run with these arguments, the first of which is the program.
     #[must_use]
-    pub fn new(arguments: &[OsString], terminal: Terminal) -> Self {
+    pub fn new(arguments: &[OsString], host: Host) -> Self {
         let words = arguments.iter().skip(1).map(|word| quoted(&word.to_string_lossy()));
         let command = std::iter::once("harness".to_owned()).chain(words).collect::<Vec<_>>().join(" ");
-        Self { command, terminal }
+        Self { command, host }
     }
 
     /// The command as a person would type it.
@@ -40,13 +46,13 @@ impl Environment {
     /// Where the numbers of `seed` come from.
     #[must_use]
     pub fn provenance(&self, seed: u64) -> Provenance {
-        Provenance { seed, revision: REVISION.to_owned(), command: self.command.clone() }
+        Provenance { seed, revision: self.host.revision.to_owned(), command: self.command.clone() }
     }
 
     /// A progress bar of `length` steps, drawn if there is a terminal.
     #[must_use]
     pub fn progress(&self, length: u64, what: &'static str) -> ProgressBar {
-        if !self.terminal.progress {
+        if !self.host.progress {
             return ProgressBar::hidden();
         }
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} % {eta}")

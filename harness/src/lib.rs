@@ -31,7 +31,7 @@ pub mod result;
 pub mod spec;
 pub mod vocabulary;
 
-pub use environment::{Environment, Terminal};
+pub use environment::{Environment, Host};
 pub use failure::{DONE, Failure, INTERRUPTED, NOT_WRITTEN, REFUSED, UNSOUND};
 
 use clap::Parser;
@@ -47,14 +47,14 @@ pub fn run(
     stdin: &mut dyn Read,
     stdout: &mut dyn Write,
     stderr: &mut dyn Write,
-    terminal: Terminal,
+    host: Host,
 ) -> i32 {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(error) => return answer_without_running(&error, stdout, stderr),
     };
-    let environment = Environment::new(&arguments, terminal);
+    let environment = Environment::new(&arguments, host);
     let outcome = match cli.command {
         Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
@@ -71,7 +71,7 @@ pub fn run(
             let interrupted = failure == Failure::Interrupted;
             // The line of a progress bar that was given up has no end yet. Nobody is left to tell if standard
             // error is closed.
-            let gap = if interrupted && terminal.progress { "\n" } else { "" };
+            let gap = if interrupted && host.progress { "\n" } else { "" };
             if !interrupted || interrupt::ends_here() {
                 let _ = writeln!(stderr, "{gap}{failure}");
             }

@@ -201,7 +201,7 @@ impl Job<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Terminal;
+    use crate::Host;
 
     #[test]
     fn the_bar_tells_the_error_of_what_is_drawn() {
@@ -211,7 +211,7 @@ mod tests {
         let mut plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
         plan.samples_per_pixel = 2;
         let [width, height] = plan.camera.resolution().map(|side| side as usize);
-        let environment = Environment::new(&[], Terminal::default());
+        let environment = Environment::new(&[], Host::default());
         let job = |value: f32| {
             let reference = Image::new(width, height, vec![[value; 3]; width * height]);
             let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();

@@ -109,7 +109,7 @@ fn is_sound(report: &Report) -> bool {
 mod tests {
     use super::super::write::fixture_document;
     use super::*;
-    use crate::{REFUSED, Terminal};
+    use crate::{REFUSED, Host};
 
     const KIND: ReportKind = ReportKind {
         name: "made-up",
@@ -126,7 +126,7 @@ mod tests {
     };
 
     fn code(arguments: &ReportArguments) -> i32 {
-        let environment = Environment::new(&[], Terminal::default());
+        let environment = Environment::new(&[], Host::default());
         report(&KIND, arguments, &environment, &mut Vec::new()).unwrap_or_else(|failure| failure.code())
     }
 

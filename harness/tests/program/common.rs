@@ -1,6 +1,6 @@
 //! Drives the program as a user would: arguments and standard input in, exit code and both streams out.
 
-use fairflight_harness::{Terminal, run};
+use fairflight_harness::{Host, run};
 use serde_json::Value;
 
 /// What a run of the program left behind.
@@ -15,7 +15,7 @@ pub(crate) struct Outcome {
 pub(crate) fn harness(arguments: &[&str], stdin: &str) -> Outcome {
     let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
     let words = std::iter::once(&"harness").chain(arguments).copied();
-    let code = run(words, &mut stdin.as_bytes(), &mut stdout, &mut stderr, Terminal::default());
+    let code = run(words, &mut stdin.as_bytes(), &mut stdout, &mut stderr, Host::default());
     let text = |bytes| String::from_utf8(bytes).expect("the program writes UTF-8");
     Outcome { code, stdout: text(stdout), stderr: text(stderr) }
 }

@@ -203,7 +203,7 @@ fn a_result_that_cannot_be_written_has_a_code_of_its_own() {
         &mut spec.as_bytes(),
         &mut Closed,
         &mut stderr,
-        fairflight_harness::Terminal::default(),
+        fairflight_harness::Host::default(),
     );
     assert_eq!(code, 3);
 }

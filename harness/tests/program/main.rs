@@ -4,8 +4,6 @@ mod beyond;
 mod budget;
 mod common;
 mod estimate;
-#[cfg(unix)]
-mod interrupt;
 mod lawful_runs;
 mod passes;
 mod references;

@@ -2,8 +2,11 @@
 
 use crate::common::harness;
 use boon::{Compiler, Schemas};
+use fairflight_harness::estimator::EstimatorSpec;
 use fairflight_harness::vocabulary::{schema, tables, things};
+use fairflight_laws::catalogue;
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 
@@ -153,4 +156,12 @@ fn the_tables_of_the_documentation_are_those_of_the_program() {
     let (begin, end) = ("<!-- harness schema --tables -->\n\n", "<!-- end -->");
     let found = text.split_once(begin).and_then(|(_, rest)| rest.split_once(end)).expect("both marks").0;
     assert!(found == tables(), "`harness schema --tables` prints other tables: put them between the marks");
+}
+
+#[test]
+fn every_kind_of_estimator_has_a_law_in_the_catalogue() {
+    let checked: BTreeSet<&str> =
+        catalogue().iter().flat_map(|check| check.kinds.iter().map(|kind| kind.name())).collect();
+    let registered: BTreeSet<&str> = EstimatorSpec::NAMES.iter().copied().collect();
+    assert_eq!(checked, registered);
 }

@@ -1,6 +1,6 @@
 //! A person gives up in the middle of a report or an image. Signals are sent as on Unix.
+#![cfg(unix)]
 
-use crate::render::scene;
 use fairflight_harness::image::Image;
 use serde_json::{Value, json};
 use std::fs;
@@ -12,6 +12,15 @@ use std::time::{Duration, Instant};
 
 /// Far longer than the first steps of a report and the removal of a folder take on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The reference scene, small.
+fn scene() -> Value {
+    let mut scene: Value =
+        serde_json::from_str(include_str!("../../scenes/eq21-environment.json")).expect("a scene of ours");
+    scene["camera"]["resolution"] = json!([20, 18]);
+    scene["samples_per_pixel"] = json!(4);
+    scene
+}
 
 /// A program that does not outlive its test.
 struct Running(Option<Child>);

@@ -1,6 +1,7 @@
-//! The program: everything is in the library, so that tests drive it as a user would.
+//! The program: everything is in the library, so that tests drive it as a user would. Only the program knows its revision: after a
+//! commit nothing else is compiled again.
 
-use fairflight_harness::Terminal;
+use fairflight_harness::Host;
 use std::io::{self, IsTerminal, Write};
 
 fn main() -> std::process::ExitCode {
@@ -13,7 +14,7 @@ fn main() -> std::process::ExitCode {
         &mut io::stdin().lock(),
         &mut io::stdout().lock(),
         &mut io::stderr(),
-        Terminal { progress: io::stderr().is_terminal() },
+        Host { progress: io::stderr().is_terminal(), revision: env!("FAIRFLIGHT_REVISION") },
     );
     std::process::ExitCode::from(u8::try_from(code).unwrap_or(u8::MAX))
 }
