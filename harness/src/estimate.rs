@@ -4,6 +4,7 @@ use crate::budget::{Budget, patience, seconds_per_lookup};
 use crate::cli::EstimateArguments;
 use crate::experiment::Prepared;
 use crate::field::MediumLibrary;
+use crate::reader::json;
 use crate::result::ExperimentResult;
 use crate::spec::{Overrides, Request};
 use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
@@ -70,10 +71,11 @@ pub(crate) fn named(path: &Path) -> String {
 /// The text of a spec; - is standard input.
 pub(crate) fn read(path: &Path, stdin: &mut dyn Read) -> Result<String, Failure> {
     if path.as_os_str() == "-" {
-        let mut text = String::new();
-        return stdin.read_to_string(&mut text).map(|_| text).map_err(Failure::refused);
+        let mut bytes = Vec::new();
+        stdin.read_to_end(&mut bytes).map_err(Failure::refused)?;
+        return json::text(bytes);
     }
-    std::fs::read_to_string(path).map_err(Failure::refused)
+    std::fs::read(path).map_err(Failure::refused).and_then(json::text)
 }
 
 /// All experiments of a request, none of which is drawn before all are known to be lawful and together within

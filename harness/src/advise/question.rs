@@ -6,13 +6,12 @@ use crate::comparison::{RaySet, chords};
 use crate::estimate::{named, read};
 use crate::field::MediumSpec;
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
-use crate::reader::Node;
+use crate::reader::{Node, json};
 use crate::report::document::Volume;
 use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec};
 use fairflight_media::{Bounds, Tolerance};
 use fairflight_scene::Camera;
 use fairflight_sources::{Seeded, UniformSource, derive_seed};
-use serde_json::Value;
 use std::io::Read;
 
 /// Chords shorter than this share of the medium's extent say little.
@@ -74,8 +73,7 @@ impl Question {
         let name = named(file);
         let in_file = |failure: Failure| failure.within(&name);
         let text = read(file, stdin).map_err(in_file)?;
-        let value: Value = serde_json::from_str(&text)
-            .map_err(|error| in_file(Failure::refused(format!("not JSON: {error}"))))?;
+        let value = json::parse(&text).map_err(in_file)?;
         if value.get("camera").is_some() {
             let overrides = SceneOverrides { samples_per_pixel: Some(1), seed: Some(arguments.seed) };
             let scene = SceneSpec::parse(&text, overrides).map_err(in_file)?;

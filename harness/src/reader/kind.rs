@@ -1,6 +1,6 @@
 //! Kinds: a thing that a spec can ask for, declared once with its keys; lists of kinds.
 
-use super::{Node, Object, Rule};
+use super::{Node, Object, Rule, similar};
 use crate::Failure;
 use serde_json::{Map, Value, json};
 
@@ -200,8 +200,11 @@ pub fn take_listed<T>(
     take: impl FnOnce(&str, &Object<'_>) -> Option<Result<T, Failure>>,
 ) -> Result<T, Failure> {
     let kind = object.required("kind")?;
-    take(kind.text()?, object)
-        .unwrap_or_else(|| Err(kind.refuse(format!("must be {}", super::rule::one_of(names)))))
+    let name = kind.text()?;
+    take(name, object).unwrap_or_else(|| {
+        let meant = similar::meant(name, names.iter().copied());
+        Err(kind.refuse(format!("must be {}{meant}", super::rule::one_of(names))))
+    })
 }
 
 /// Takes a kind and checks which of its keys go together.

@@ -1,8 +1,10 @@
 //! Reading of JSON: values with the path that leads to them, rules of keys, kinds of things with their keys, lists of kinds.
 
+pub mod json;
 pub mod kind;
 mod node;
 pub mod rule;
+mod similar;
 
 pub use kind::{Kind, Listed};
 pub use node::{Node, Object};

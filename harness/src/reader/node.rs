@@ -1,5 +1,6 @@
 //! A JSON value together with the path that leads to it, so that every refusal names its key.
 
+use super::similar;
 use crate::Failure;
 use glam::DVec3;
 use serde_json::{Map, Value};
@@ -209,6 +210,12 @@ impl<'a> Node<'a> {
 }
 
 impl<'a> Object<'a> {
+    /// Whether the object has a key.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.map.contains_key(key)
+    }
+
     /// A refusal of the whole object for a reason.
     pub fn reject(&self, reason: impl std::fmt::Display) -> Failure {
         Failure::refused(format!("{}: {reason}", self.path))
@@ -249,8 +256,9 @@ impl<'a> Object<'a> {
         match self.map.keys().find(|key| !taken.contains(&key.as_str())) {
             None => Ok(()),
             Some(key) => Err(Failure::refused(format!(
-                "{}: unknown key, allowed here: {}",
+                "{}: unknown key{}, allowed here: {}",
                 join(&self.path, key),
+                similar::meant(key, taken.iter().copied()),
                 taken.join(", ")
             ))),
         }

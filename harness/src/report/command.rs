@@ -109,7 +109,7 @@ fn is_sound(report: &Report) -> bool {
 mod tests {
     use super::super::write::fixture_document;
     use super::*;
-    use crate::{REFUSED, Host};
+    use crate::{Host, REFUSED};
 
     const KIND: ReportKind = ReportKind {
         name: "made-up",

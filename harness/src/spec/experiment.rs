@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::estimator::EstimatorSpec;
 use crate::field::ProfileSpec;
-use crate::reader::Node;
+use crate::reader::{Node, json};
 use serde_json::Value;
 
 /// One measurement that is asked for.
@@ -53,9 +53,11 @@ impl Request {
     /// # Errors
     /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
     pub fn parse(text: &str, overrides: Overrides) -> Result<Self, Failure> {
-        let spec: Value =
-            serde_json::from_str(text).map_err(|error| Failure::refused(format!("not JSON: {error}")))?;
+        let spec = json::parse(text)?;
         let root = Node::root(&spec).object()?;
+        if root.has("camera") && !root.has("profile") {
+            return Err(Failure::refused("this is a scene, no experiment: `harness render` takes it"));
+        }
         let Some(sweep) = root.optional("sweep") else {
             return Ok(Self::Single(Box::new(Experiment::read(&spec, overrides)?)));
         };

@@ -350,3 +350,47 @@ fn command_lines() {
     assert_eq!(harness(&["--help"], "").code, 0);
     assert_eq!(harness(&["list"], "").code, 0);
 }
+
+#[test]
+fn a_slip_is_told_what_was_meant() {
+    let on_linear = |estimator: &str| {
+        format!(
+            r#"{{ "profile": {{ "kind": "piecewise_linear", "positions": [0, 1], "sigma_t": [0, 1] }},
+                  "estimator": {estimator}, "samples": 10, "seed": 1 }}"#
+        )
+    };
+    for (estimator, meant) in [
+        (r#"{ "kind": "double_particle", "sigma_samp": 1, "sigma_sampl": 1 }"#, "did you mean sigma_samp?"),
+        (r#"{ "kind": "ratio_tracking", "sigma_samp": 1 }"#, "did you mean double_particle without control?"),
+        (r#"{ "kind": "doubel_particle", "sigma_samp": 1 }"#, "did you mean double_particle?"),
+        (r#"{ "kind": "delta_tracking", "majorant": 1 }"#, "did you mean woodcock?"),
+    ] {
+        let outcome = harness(&["estimate", "-"], &on_linear(estimator));
+        assert_eq!(outcome.code, 2);
+        assert!(outcome.stderr.contains(meant), "{}", outcome.stderr);
+    }
+}
+
+#[test]
+fn what_is_no_experiment_is_named_as_what_it_is() {
+    let scene = include_str!("../../scenes/eq21-environment.json");
+    let experiment = r#"{ "profile": {}, "estimator": {}, "samples": 1, "seed": 1 }"#;
+    let volume = fixture("cloud.vdb");
+    let twice = r#"{ "samples": 1, "samples": 2 }"#;
+    for (arguments, input, words) in [
+        (vec!["estimate", "-"], scene, "this is a scene, no experiment: `harness render` takes it"),
+        (
+            vec!["render", "-", "--out", "x.png"],
+            experiment,
+            "this is an experiment, no scene: `harness estimate`",
+        ),
+        (vec!["estimate", &volume], "", "an OpenVDB file, not JSON"),
+        (vec!["estimate", "-"], twice, "the key `samples` stands twice"),
+        (vec!["estimate", "-"], "{} trailing", "trailing characters"),
+    ] {
+        let outcome = harness(&arguments, input);
+        assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""), "{arguments:?}");
+        assert!(outcome.stderr.contains(words), "{}", outcome.stderr);
+        assert_eq!(outcome.stderr.lines().count(), 1, "{}", outcome.stderr);
+    }
+}

@@ -18,12 +18,12 @@ struct Piece<const K: usize> {
 }
 
 impl<const K: usize> Cumulative<K> {
-    pub(super) fn of<T>(panels: &[Panel<T>], integrand: impl Fn(f64, &T) -> [f64; K]) -> Self {
+    pub(super) fn of<T>(panels: &[Panel<T>], integrand: &dyn Fn(f64, &T) -> [f64; K]) -> Self {
         let mut before = [0.0; K];
         let pieces = panels
             .iter()
             .map(|panel| {
-                let rows = panel.rows(|_, s, value| integrand(s, value));
+                let rows = panel.rows(&|_, s, value| integrand(s, value));
                 let piece = Piece {
                     from: panel.from,
                     to: panel.to,
@@ -53,13 +53,13 @@ impl<const K: usize> Cumulative<K> {
 /// The running integrals at the nodes of each panel, in order: what a nested integral needs.
 pub(super) fn running_at_nodes<T, const K: usize>(
     panels: &[Panel<T>],
-    integrand: impl Fn(f64, &T) -> [f64; K],
+    integrand: &dyn Fn(f64, &T) -> [f64; K],
 ) -> Vec<[[f64; NODES]; K]> {
     let mut before = [0.0; K];
     panels
         .iter()
         .map(|panel| {
-            let rows = panel.rows(|_, s, value| integrand(s, value));
+            let rows = panel.rows(&|_, s, value| integrand(s, value));
             std::array::from_fn(|k| {
                 let start = before[k];
                 before[k] += RULE.integrate(&rows[k], panel.half()).value;

@@ -28,5 +28,5 @@ pub fn adaptive_integral<const K: usize>(
     integrand: impl Fn(f64) -> [f64; K],
 ) -> Integral<K> {
     let mut panels = Panels::new(length, breakpoints, &integrand);
-    panels.integrate(&integrand, tolerance, |_, &values| values)
+    panels.integrate(&integrand, tolerance, &|_, &values| values)
 }

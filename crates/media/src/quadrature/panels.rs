@@ -1,4 +1,6 @@
 //! Panels with cached values at their nodes, and adaptive integration over them.
+//!
+//! Fields and integrands are asked through pointers: quadrature is cold, and there are hundreds of integrands.
 
 use super::rule::{NODES, PanelIntegral, RULE};
 
@@ -45,7 +47,7 @@ pub(super) struct Panel<T> {
 }
 
 impl<T> Panel<T> {
-    fn sampled(from: f64, to: f64, sample: &impl Fn(f64) -> T) -> Self {
+    fn sampled(from: f64, to: f64, sample: &dyn Fn(f64) -> T) -> Self {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         Self { from, to, values: std::array::from_fn(|i| sample(middle + half * RULE.nodes[i])) }
     }
@@ -61,7 +63,7 @@ impl<T> Panel<T> {
     /// The function values of `integrand` at the nodes, one row per component.
     pub(super) fn rows<const K: usize>(
         &self,
-        mut integrand: impl FnMut(usize, f64, &T) -> [f64; K],
+        integrand: &dyn Fn(usize, f64, &T) -> [f64; K],
     ) -> [[f64; NODES]; K] {
         let mut rows = [[0.0; NODES]; K];
         for i in 0..NODES {
@@ -75,11 +77,14 @@ impl<T> Panel<T> {
 
     pub(super) fn integrals<const K: usize>(
         &self,
-        integrand: impl FnMut(usize, f64, &T) -> [f64; K],
+        integrand: &dyn Fn(usize, f64, &T) -> [f64; K],
     ) -> [PanelIntegral; K] {
         self.rows(integrand).map(|row| RULE.integrate(&row, self.half()))
     }
 }
+
+/// The integrals of K functions over each panel.
+type Integrals<const K: usize> = Vec<[PanelIntegral; K]>;
 
 /// A partition of `[0, length]` that only ever becomes finer.
 #[derive(Clone, Debug)]
@@ -91,7 +96,7 @@ pub(super) struct Panels<T> {
 const MOST_ROUNDS: usize = 60;
 
 impl<T> Panels<T> {
-    pub(super) fn new(length: f64, breakpoints: &[f64], sample: &impl Fn(f64) -> T) -> Self {
+    pub(super) fn new(length: f64, breakpoints: &[f64], sample: &dyn Fn(f64) -> T) -> Self {
         let mut panels = Self { panels: Vec::new() };
         if length > 0.0 {
             panels.panels.push(Panel::sampled(0.0, length, sample));
@@ -101,7 +106,7 @@ impl<T> Panels<T> {
     }
 
     /// Makes each of `points` a border between panels; points outside the partition are ignored.
-    pub(super) fn split_at(&mut self, points: &[f64], sample: &impl Fn(f64) -> T) {
+    pub(super) fn split_at(&mut self, points: &[f64], sample: &dyn Fn(f64) -> T) {
         let mut points = points.to_vec();
         points.sort_unstable_by(f64::total_cmp);
         points.dedup();
@@ -122,12 +127,12 @@ impl<T> Panels<T> {
     /// Integrates each component of `integrand`, refining the partition until all errors are within `tolerance`.
     pub(super) fn integrate<const K: usize>(
         &mut self,
-        sample: &impl Fn(f64) -> T,
+        sample: &dyn Fn(f64) -> T,
         tolerance: Tolerance,
-        integrand: impl Fn(f64, &T) -> [f64; K],
+        integrand: &dyn Fn(f64, &T) -> [f64; K],
     ) -> Integral<K> {
-        self.refine(sample, tolerance, |panels| {
-            panels.iter().map(|panel| panel.integrals(|_, s, value| integrand(s, value))).collect()
+        self.refine(sample, tolerance, &|panels| {
+            panels.iter().map(|panel| panel.integrals(&|_, s, value| integrand(s, value))).collect()
         })
     }
 
@@ -135,10 +140,10 @@ impl<T> Panels<T> {
     /// the index of its part. The value of each part, and the total.
     pub(super) fn integrate_parts<const K: usize>(
         &mut self,
-        sample: &impl Fn(f64) -> T,
+        sample: &dyn Fn(f64) -> T,
         tolerance: Tolerance,
         ends: &[f64],
-        integrand: impl Fn(usize, f64, &T) -> [f64; K],
+        integrand: &dyn Fn(usize, f64, &T) -> [f64; K],
     ) -> (Vec<[f64; K]>, Integral<K>) {
         self.split_at(ends, sample);
         let parts = |panels: &[Panel<T>]| {
@@ -153,10 +158,10 @@ impl<T> Panels<T> {
         };
         let integrals = |panels: &[Panel<T>]| -> Vec<_> {
             let of_part =
-                |(panel, part): (&Panel<T>, usize)| panel.integrals(|_, s, value| integrand(part, s, value));
+                |(panel, part): (&Panel<T>, usize)| panel.integrals(&|_, s, value| integrand(part, s, value));
             panels.iter().zip(parts(panels)).map(of_part).collect()
         };
-        let total = self.refine(sample, tolerance, integrals);
+        let total = self.refine(sample, tolerance, &integrals);
         let mut values = vec![[0.0; K]; ends.len()];
         for (part, integral) in parts(&self.panels).into_iter().zip(integrals(&self.panels)) {
             // Rounding may leave a last end short of the length; what is beyond belongs to the last part.
@@ -172,14 +177,14 @@ impl<T> Panels<T> {
     /// Refines until also the running integral inside every panel is within `tolerance`.
     pub(super) fn settle<const K: usize>(
         &mut self,
-        sample: &impl Fn(f64) -> T,
+        sample: &dyn Fn(f64) -> T,
         tolerance: Tolerance,
-        integrand: impl Fn(f64, &T) -> [f64; K],
+        integrand: &dyn Fn(f64, &T) -> [f64; K],
     ) {
-        self.refine(sample, tolerance, |panels| {
+        self.refine(sample, tolerance, &|panels| {
             let running = |panel: &Panel<T>| {
                 panel
-                    .rows(|_, s, value| integrand(s, value))
+                    .rows(&|_, s, value| integrand(s, value))
                     .map(|row| RULE.integrate_running(&row, panel.half()))
             };
             panels.iter().map(running).collect()
@@ -192,9 +197,9 @@ impl<T> Panels<T> {
     /// at most half of the tolerance.
     pub(super) fn refine<const K: usize>(
         &mut self,
-        sample: &impl Fn(f64) -> T,
+        sample: &dyn Fn(f64) -> T,
         tolerance: Tolerance,
-        integrate: impl Fn(&[Panel<T>]) -> Vec<[PanelIntegral; K]>,
+        integrate: &dyn Fn(&[Panel<T>]) -> Integrals<K>,
     ) -> Integral<K> {
         let most_work = self.panels.len().max(tolerance.most_panels).saturating_mul(4);
         let mut work = 0;

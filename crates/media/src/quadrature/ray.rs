@@ -48,7 +48,7 @@ impl<F: Extinction> RayQuadrature<F> {
         const PLACE: f64 = 1e-9;
         let Self { field, panels } = self;
         let tolerance = Tolerance { absolute: PLACE, relative: PLACE, ..tolerance };
-        panels.settle(&|s| field.sigma_t(s), tolerance, |s, &sigma_t| [function(s, sigma_t)]);
+        panels.settle(&|s| field.sigma_t(s), tolerance, &|s, &sigma_t| [function(s, sigma_t)]);
         let zeros = panels.zeros(&|s, &sigma_t| function(s, sigma_t));
         self.split_at(&zeros);
     }
@@ -60,7 +60,7 @@ impl<F: Extinction> RayQuadrature<F> {
         integrand: impl Fn(f64, f64) -> [f64; K],
     ) -> Integral<K> {
         let Self { field, panels } = self;
-        panels.integrate(&|s| field.sigma_t(s), tolerance, |s, &sigma_t| integrand(s, sigma_t))
+        panels.integrate(&|s| field.sigma_t(s), tolerance, &|s, &sigma_t| integrand(s, sigma_t))
     }
 
     /// ∫ of each component of `integrand(part, s, sigma_t)` over each part of the profile, and over the whole. The parts lie
@@ -73,7 +73,7 @@ impl<F: Extinction> RayQuadrature<F> {
     ) -> (Vec<[f64; K]>, Integral<K>) {
         let Self { field, panels } = self;
         let integrand = |part: usize, s: f64, &sigma_t: &f64| integrand(part, s, sigma_t);
-        panels.integrate_parts(&|s| field.sigma_t(s), tolerance, ends, integrand)
+        panels.integrate_parts(&|s| field.sigma_t(s), tolerance, ends, &integrand)
     }
 
     /// ∫ of each component of `outer(s, sigma_t, I(s))`, where `I(s) = ∫_0^s inner`.
@@ -83,20 +83,8 @@ impl<F: Extinction> RayQuadrature<F> {
         inner: impl Fn(f64, f64) -> [f64; M],
         outer: impl Fn(f64, f64, [f64; M]) -> [f64; K],
     ) -> Integral<K> {
-        // The inner integral first: where it has converged, an error of the outer one is its own.
         let Self { field, panels } = self;
-        panels.settle(&|s| field.sigma_t(s), tolerance, |s, &sigma_t| inner(s, sigma_t));
-        panels.refine(&|s| field.sigma_t(s), tolerance, |panels| {
-            let running = running_at_nodes(panels, |s, &sigma_t| inner(s, sigma_t));
-            panels
-                .iter()
-                .zip(&running)
-                .map(|(panel, running)| {
-                    panel
-                        .integrals(|i, s, &sigma_t| outer(s, sigma_t, std::array::from_fn(|m| running[m][i])))
-                })
-                .collect()
-        })
+        nested(panels, &|s| field.sigma_t(s), tolerance, &inner, &outer)
     }
 
     /// `I(s) = ∫_0^s integrand` as a function of s.
@@ -106,8 +94,8 @@ impl<F: Extinction> RayQuadrature<F> {
         integrand: impl Fn(f64, f64) -> [f64; K],
     ) -> Cumulative<K> {
         let Self { field, panels } = self;
-        panels.settle(&|s| field.sigma_t(s), tolerance, |s, &sigma_t| integrand(s, sigma_t));
-        Cumulative::of(&panels.panels, |s, &sigma_t| integrand(s, sigma_t))
+        panels.settle(&|s| field.sigma_t(s), tolerance, &|s, &sigma_t| integrand(s, sigma_t));
+        Cumulative::of(&panels.panels, &|s, &sigma_t| integrand(s, sigma_t))
     }
 
     /// Every node at which σ_t was evaluated so far, in order, with the value found there.
@@ -122,6 +110,30 @@ impl<F: Extinction> RayQuadrature<F> {
     pub fn borders(&self) -> impl Iterator<Item = f64> + '_ {
         self.panels.panels.iter().skip(1).map(|panel| panel.from)
     }
+}
+
+/// What depends on s, σ_t and an inner integral up to s.
+type Outer<'a, const M: usize, const K: usize> = &'a dyn Fn(f64, f64, [f64; M]) -> [f64; K];
+
+fn nested<const M: usize, const K: usize>(
+    panels: &mut Panels<f64>,
+    sample: &dyn Fn(f64) -> f64,
+    tolerance: Tolerance,
+    inner: &dyn Fn(f64, f64) -> [f64; M],
+    outer: Outer<'_, M, K>,
+) -> Integral<K> {
+    // The inner integral first: where it has converged, an error of the outer one is its own.
+    panels.settle(sample, tolerance, &|s, &sigma_t| inner(s, sigma_t));
+    panels.refine(sample, tolerance, &|panels| {
+        let running = running_at_nodes(panels, &|s, &sigma_t| inner(s, sigma_t));
+        panels
+            .iter()
+            .zip(&running)
+            .map(|(panel, running)| {
+                panel.integrals(&|i, s, &sigma_t| outer(s, sigma_t, std::array::from_fn(|m| running[m][i])))
+            })
+            .collect()
+    })
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ impl<T> Panels<T> {
     pub(super) fn zeros(&self, function: &dyn Fn(f64, &T) -> f64) -> Vec<f64> {
         let mut zeros = Vec::new();
         for panel in &self.panels {
-            let [row] = panel.rows(|_, s, value| [function(s, value)]);
+            let [row] = panel.rows(&|_, s, value| [function(s, value)]);
             let (low, high) =
                 row.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
             // Far from zero compared to all that it varies by.

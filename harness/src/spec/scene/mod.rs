@@ -20,9 +20,8 @@ pub use surface::{MaterialSpec, RectangleSpec, ShapeKind, ShapeSpec, SphereSpec,
 pub use volume::VolumeSpec;
 
 use crate::Failure;
-use crate::reader::Node;
+use crate::reader::{Node, json};
 use fairflight_scene::Camera;
-use serde_json::Value;
 
 /// A scene as given.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,9 +57,11 @@ impl SceneSpec {
     /// # Errors
     /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
     pub fn parse(text: &str, overrides: SceneOverrides) -> Result<Self, Failure> {
-        let spec: Value =
-            serde_json::from_str(text).map_err(|error| Failure::refused(format!("not JSON: {error}")))?;
+        let spec = json::parse(text)?;
         let root = Node::root(&spec).object()?;
+        if root.has("profile") && !root.has("camera") {
+            return Err(Failure::refused("this is an experiment, no scene: `harness estimate` takes it"));
+        }
         let allow_gain = root.optional("allow_gain").map_or(Ok(false), |node| node.boolean())?;
         let camera = camera::read(&root.required("camera")?)?;
         let medium = root.optional("medium").map(|node| VolumeSpec::read(&node, allow_gain)).transpose()?;
