@@ -1,11 +1,11 @@
-//! The gradient noise of Perlin 2002, on the permutation table of the library `noise`.
+//! The gradient noise of Perlin 2002, on the permutation tables of the library `noise`.
 //!
 //! The values are those of `noise::Perlin` to the last bit, which a test holds it to. The arithmetic is written again
 //! because twelve octaves at each look-up are the cost of the whole medium: here the corners of a cell share their hashes
-//! and a gradient is read from a table, where the library hashes each corner by itself and jumps to one of 16 cases.
+//! and a gradient is read from a table, where the library hashes each corner by itself and jumps to one of 16 cases. Its tables are made
+//! here too: for 256 bytes it would bring a second version of `rand` into every program.
 
 use glam::DVec3;
-use noise::permutationtable::{NoiseHasher, PermutationTable};
 
 /// The noise of one seed. It has period 256 along each axis.
 #[derive(Clone, Debug)]
@@ -33,6 +33,29 @@ const GRADIENTS: [[f64; 3]; 16] = [
     [0.0, -1.0, -1.0],
 ];
 
+/// The permutation of a seed: 0 to 255 shuffled from the last down (Durstenfeld 1964), by a generator of Marsaglia 2003 that is seeded with 1 and three
+/// times the seed. An index below n is the upper half of a 32-bit variate times n; variates of the last, incomplete round are left out.
+fn permutation(seed: u32) -> [u8; 256] {
+    let [mut x, mut y, mut z, mut w] = [1, seed, seed, seed];
+    let mut next = || {
+        let t = x ^ (x << 11);
+        (x, y, z) = (y, z, w);
+        w ^= (w >> 19) ^ t ^ (t >> 8);
+        w
+    };
+    let mut below = |n: u32| loop {
+        let product = u64::from(next()) * u64::from(n);
+        if product as u32 <= (n << n.leading_zeros()).wrapping_sub(1) {
+            return (product >> 32) as usize;
+        }
+    };
+    let mut permutation = std::array::from_fn(|i| i as u8);
+    for i in (1..256_u32).rev() {
+        permutation.swap(i as usize, below(i + 1));
+    }
+    permutation
+}
+
 /// 2/√3, the library's factor. With it the noise would leave \[−1, 1\] here and there, and is clamped.
 const AMPLITUDE: f64 = 1.154_700_538_379_251_5;
 
@@ -51,13 +74,7 @@ impl GradientNoise {
         ((4.0 * 5.773_502_691_896_258 + 7.5) + 2.0 * (8.0 * 1.875 * 1.875 + 7.5)) * AMPLITUDE;
 
     pub(crate) fn new(seed: u32) -> Self {
-        let table = PermutationTable::new(seed);
-        // The hash of a single coordinate is the entry of the table itself, a byte.
-        let mut permutation = [0; 256];
-        for (entry, coordinate) in permutation.iter_mut().zip(0..) {
-            *entry = (table.hash(&[coordinate]) & 0xff) as u8;
-        }
-        Self { permutation }
+        Self { permutation: permutation(seed) }
     }
 
     /// The noise in \[−1, 1\] at a point whose coordinates fit a 32-bit integer.
@@ -136,6 +153,7 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
 mod tests {
     use super::*;
     use glam::dvec3;
+    use noise::permutationtable::{NoiseHasher, PermutationTable};
     use noise::{NoiseFn, Perlin};
 
     #[test]
@@ -164,6 +182,16 @@ mod tests {
                     assert_eq!(ours.at(point.round()), 0.0);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn permutations_are_those_of_the_library() {
+        for seed in (0..500).chain([u32::MAX, 0x8000_0000, 0xBAD_5EED]) {
+            let table = PermutationTable::new(seed);
+            // The hash of a single coordinate is the entry of the table itself, a byte.
+            let theirs: [u8; 256] = std::array::from_fn(|i| (table.hash(&[i as isize]) & 0xff) as u8);
+            assert_eq!(permutation(seed), theirs, "{seed}");
         }
     }
 

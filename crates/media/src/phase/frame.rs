@@ -46,4 +46,13 @@ mod tests {
         }
         assert!((direction.length() - 1.0).abs() < 1e-15);
     }
+
+    /// Newton's step squares what the length is off by.
+    #[test]
+    fn a_length_that_is_off_is_mended() {
+        for off in [1e-4, -1e-4] {
+            let direction = deflect((1.0 + off) * DVec3::Z, 1.0, 0.3);
+            assert!((direction.length() - 1.0).abs() < 1e-7, "{}", direction.length());
+        }
+    }
 }

@@ -40,4 +40,11 @@ mod tests {
         }
         assert_eq!(Rayleigh.sample_cosine(0.0), -1.0);
     }
+
+    #[test]
+    fn values_by_hand() {
+        for (cosine, value) in [(0.0, 3.0), (0.5, 3.75), (-1.0, 6.0)] {
+            assert!((Rayleigh.eval(cosine) * 16.0 * PI - value).abs() < 1e-14);
+        }
+    }
 }
