@@ -30,8 +30,21 @@ pub(crate) enum Command {
     Verify(VerifyArguments),
     /// List reports, and all kinds of profiles, media, estimators, integrators and parts of scenes with their keys
     List,
+    /// Say what an OpenVDB file holds: grids, boxes, values, mean free paths, and a scene that can be pasted
+    Info(InfoArguments),
     /// Print the JSON Schema of experiments and scenes: with it editors check and complete them
     Schema(SchemaArguments),
+}
+
+/// Arguments of `info`.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct InfoArguments {
+    /// The file
+    #[arg(value_name = "FILE.vdb")]
+    pub file: PathBuf,
+    /// The grids as JSON, without a scene
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `schema`.

@@ -42,7 +42,8 @@ pub(crate) fn run(
     let name = named(&arguments.spec);
     let text = read(&arguments.spec, stdin).map_err(|failure| failure.within(&name))?;
     let overrides = Overrides { samples: arguments.samples, seed: arguments.seed };
-    let request = Request::parse(&text, overrides).map_err(|failure| failure.within(&name))?;
+    let request = Request::parse_in(&text, folder_of(&arguments.spec), overrides)
+        .map_err(|failure| failure.within(&name))?;
     let budget = Budget::of(arguments.budget);
     let (prepared, warnings) = environment
         .on_threads(arguments.threads, || {
@@ -66,6 +67,11 @@ pub(crate) fn run(
 /// What a spec is called in a refusal; - is standard input.
 pub(crate) fn named(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// The folder of a spec, to which the paths in it are relative; of - the working directory.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }
 
 /// The text of a spec; - is standard input.

@@ -11,6 +11,7 @@ mod cli;
 mod environment;
 mod estimate;
 mod failure;
+mod info;
 
 mod render;
 mod verify;
@@ -60,6 +61,7 @@ pub fn run(
         Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
+        Some(Command::Info(arguments)) => info::run(&arguments, stdout),
         Some(Command::List) => vocabulary::list(stdout),
         Some(Command::Schema(arguments)) => vocabulary::print_schema(arguments, stdout),
         Some(Command::Report(arguments)) => report::command::run(&arguments, &environment, stderr),

@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::cli::AdviseArguments;
 use crate::comparison::{RaySet, chords};
-use crate::estimate::{named, read};
+use crate::estimate::{folder_of, named, read};
 use crate::field::MediumSpec;
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::reader::{Node, json};
@@ -76,14 +76,14 @@ impl Question {
         let value = json::parse(&text).map_err(in_file)?;
         if value.get("camera").is_some() {
             let overrides = SceneOverrides { samples_per_pixel: Some(1), seed: Some(arguments.seed) };
-            let scene = SceneSpec::parse(&text, overrides).map_err(in_file)?;
+            let scene = SceneSpec::parse_in(&text, folder_of(file), overrides).map_err(in_file)?;
             let volume = scene.medium.as_ref().ok_or_else(|| {
                 in_file(Failure::refused("medium: this scene has none, there is nothing to estimate"))
             })?;
             made_of_transmittance(&scene, volume).map_err(in_file)?;
             return question(name.clone(), &volume.medium, Some(scene.camera));
         }
-        let spec = MediumSpec::read(&Node::root(&value)).map_err(in_file)?;
+        let spec = MediumSpec::read(&Node::root_in(&value, folder_of(file))).map_err(in_file)?;
         question(name, &spec, None)
     }
 

@@ -51,7 +51,7 @@ impl MediumLibrary {
 }
 
 /// The world box of the active voxels grown by one voxel; `None` if nothing is active.
-fn grown_bounds(grid: &VoxelGrid) -> Option<Bounds> {
+pub(crate) fn grown_bounds(grid: &VoxelGrid) -> Option<Bounds> {
     let (low, high) = grid.active_bounds()?;
     let transform = glam_affine(&grid.world_from_index());
     let corner = |bits: usize| {
@@ -67,7 +67,7 @@ fn grown_bounds(grid: &VoxelGrid) -> Option<Bounds> {
     Some(Bounds::Box { min, max })
 }
 
-fn glam_affine(affine: &Affine) -> DAffine3 {
+pub(crate) fn glam_affine(affine: &Affine) -> DAffine3 {
     let axis = |v: [f64; 3]| DVec3::from_array(affine.apply_vector(v));
     DAffine3::from_cols(
         axis([1.0, 0.0, 0.0]),

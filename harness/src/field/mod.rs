@@ -24,6 +24,7 @@ pub use expression::{ExpressionMediumSpec, ExpressionSpec};
 pub use homogeneous::HomogeneousSpec;
 pub use known::{ErasedField, Field, Knowledge, KnownField, ThicknessMethod};
 pub use library::MediumLibrary;
+pub(crate) use library::{glam_affine, grown_bounds};
 pub use medium::{AnyMedium, MediumJob};
 pub use perlin::PerlinSpec;
 pub use piecewise_constant::PiecewiseConstantSpec;

@@ -2,7 +2,7 @@
 
 use super::known::{Knowledge, KnownField, ThicknessMethod, closed_form_of};
 use super::{AnyMedium, BoundsRule, MediumKind, MediumLibrary, VoxelLattice};
-use crate::reader::rule::{Flag, Maybe, Number, Text};
+use crate::reader::rule::{File, Flag, Maybe, Number, Text};
 use crate::{Failure, kind};
 use fairflight_media::{Bounds, Ray, Voxels};
 use std::path::PathBuf;
@@ -11,8 +11,8 @@ use std::sync::Arc;
 kind! {
     /// Trilinear between the voxels of an OpenVDB fog volume.
     VdbSpec = "vdb" {
-        /// The file.
-        file: PathBuf as Text,
+        /// The file, relative to the one in which it is named.
+        file: PathBuf as File,
         /// The grid; density by default, else the only float grid.
         grid: Option<String> as Maybe<Text> = None,
         /// A factor of the voxel values \[1/length\].

@@ -5,12 +5,15 @@ use crate::Failure;
 use glam::DVec3;
 use serde_json::{Map, Value};
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 /// A value of the spec, and where it stands.
 #[derive(Clone, Debug)]
 pub struct Node<'a> {
     value: &'a Value,
     path: String,
+    /// Where the paths of files begin.
+    base: &'a Path,
 }
 
 /// An object whose keys are taken one by one; what is left at the end is unknown.
@@ -18,18 +21,25 @@ pub struct Node<'a> {
 pub struct Object<'a> {
     map: &'a Map<String, Value>,
     path: String,
+    base: &'a Path,
     taken: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Node<'a> {
-    /// The root of a spec: its path is empty.
+    /// The root of a spec: its path is empty. Paths of files are relative to the working directory.
     #[must_use]
     pub fn root(value: &'a Value) -> Self {
-        Self { value, path: String::new() }
+        Self::root_in(value, Path::new(""))
+    }
+
+    /// The root of a spec whose paths of files are relative to the folder `base`.
+    #[must_use]
+    pub fn root_in(value: &'a Value, base: &'a Path) -> Self {
+        Self { value, path: String::new(), base }
     }
 
     fn child(&self, key: impl std::fmt::Display, value: &'a Value) -> Self {
-        Self { value, path: join(&self.path, key) }
+        Self { value, path: join(&self.path, key), base: self.base }
     }
 
     /// A refusal that names this key, what was found and what is allowed.
@@ -49,7 +59,7 @@ impl<'a> Node<'a> {
     /// If it is none.
     pub fn object(&self) -> Result<Object<'a>, Failure> {
         let map = self.value.as_object().ok_or_else(|| self.refuse("must be an object"))?;
-        Ok(Object { map, path: self.path.clone(), taken: RefCell::default() })
+        Ok(Object { map, path: self.path.clone(), base: self.base, taken: RefCell::default() })
     }
 
     /// The value below this one to which keys lead, with points between them.
@@ -150,6 +160,14 @@ impl<'a> Node<'a> {
         self.value.as_str().ok_or_else(|| self.refuse("must be a string"))
     }
 
+    /// The path of a file.
+    ///
+    /// # Errors
+    /// If it is no string.
+    pub fn file(&self) -> Result<PathBuf, Failure> {
+        self.text().map(|text| self.base.join(text))
+    }
+
     /// true or false.
     ///
     /// # Errors
@@ -224,7 +242,7 @@ impl<'a> Object<'a> {
     /// The value of a key that may be absent.
     pub fn optional(&self, key: &'static str) -> Option<Node<'a>> {
         self.taken.borrow_mut().push(key);
-        self.map.get(key).map(|value| Node { value, path: join(&self.path, key) })
+        self.map.get(key).map(|value| Node { value, path: join(&self.path, key), base: self.base })
     }
 
     /// The value of a key.

@@ -179,10 +179,13 @@ impl Rule<String> for Text {
     }
 }
 
-/// The path of a file.
-impl Rule<PathBuf> for Text {
+/// The path of a file, relative to the file in which it stands.
+#[derive(Debug)]
+pub struct File;
+
+impl Rule<PathBuf> for File {
     fn read(node: &Node<'_>) -> Result<PathBuf, Failure> {
-        node.text().map(PathBuf::from)
+        node.file()
     }
     fn written(value: &PathBuf) -> Value {
         json!(value)

@@ -20,7 +20,7 @@ mod work;
 
 use crate::budget::Budget;
 use crate::cli::RenderArguments;
-use crate::estimate::{named, read};
+use crate::estimate::{folder_of, named, read};
 use crate::field::MediumLibrary;
 use crate::image::{Exposure, Image};
 use crate::interrupt::stop_gently;
@@ -52,7 +52,7 @@ pub(crate) fn run(
     let in_scene = |failure: Failure| failure.within(&name);
     let text = read(&arguments.scene, stdin).map_err(in_scene)?;
     let overrides = SceneOverrides { samples_per_pixel: arguments.samples_per_pixel, seed: arguments.seed };
-    let spec = SceneSpec::parse(&text, overrides).map_err(in_scene)?;
+    let spec = SceneSpec::parse_in(&text, folder_of(&arguments.scene), overrides).map_err(in_scene)?;
     let library = MediumLibrary::default();
     let plan = ScenePlan::of(&spec, &library).map_err(in_scene)?;
     if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {

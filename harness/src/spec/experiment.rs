@@ -5,6 +5,7 @@ use crate::estimator::EstimatorSpec;
 use crate::field::ProfileSpec;
 use crate::reader::{Node, json};
 use serde_json::Value;
+use std::path::Path;
 
 /// One measurement that is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,18 +49,26 @@ pub struct Sweep {
 const MOST_SAMPLES: u64 = 1_000_000_000_000;
 
 impl Request {
-    /// Reads a whole spec.
+    /// Reads a whole spec; paths of files in it are relative to the working directory.
     ///
     /// # Errors
     /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
     pub fn parse(text: &str, overrides: Overrides) -> Result<Self, Failure> {
+        Self::parse_in(text, Path::new(""), overrides)
+    }
+
+    /// Reads a whole spec; paths of files in it are relative to the folder `base`.
+    ///
+    /// # Errors
+    /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
+    pub fn parse_in(text: &str, base: &Path, overrides: Overrides) -> Result<Self, Failure> {
         let spec = json::parse(text)?;
-        let root = Node::root(&spec).object()?;
+        let root = Node::root_in(&spec, base).object()?;
         if root.has("camera") && !root.has("profile") {
             return Err(Failure::refused("this is a scene, no experiment: `harness render` takes it"));
         }
         let Some(sweep) = root.optional("sweep") else {
-            return Ok(Self::Single(Box::new(Experiment::read(&spec, overrides)?)));
+            return Ok(Self::Single(Box::new(Experiment::read(&spec, base, overrides)?)));
         };
         let object = sweep.object()?;
         let path_node = object.required("path")?;
@@ -75,7 +84,7 @@ impl Request {
             let target = locate(&mut point, path)
                 .ok_or_else(|| path_node.refuse("must name a key of profile or estimator"))?;
             *target = item.value().clone();
-            Ok((item.value().clone(), Experiment::read(&point, overrides)?))
+            Ok((item.value().clone(), Experiment::read(&point, base, overrides)?))
         });
         Ok(Self::Sweep(Sweep { points: points.collect::<Result<_, Failure>>()? }))
     }
@@ -105,8 +114,8 @@ fn locate<'a>(spec: &'a mut Value, path: &str) -> Option<&'a mut Value> {
 }
 
 impl Experiment {
-    fn read(spec: &Value, overrides: Overrides) -> Result<Self, Failure> {
-        let root = Node::root(spec).object()?;
+    fn read(spec: &Value, base: &Path, overrides: Overrides) -> Result<Self, Failure> {
+        let root = Node::root_in(spec, base).object()?;
         let _ = root.optional("sweep");
         let or_override = |key, least, most, instead: Option<u64>| match (root.optional(key), instead) {
             (Some(node), instead) => node.integer(least, most).map(|given| instead.unwrap_or(given)),

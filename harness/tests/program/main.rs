@@ -4,6 +4,7 @@ mod beyond;
 mod budget;
 mod common;
 mod estimate;
+mod info;
 mod lawful_runs;
 mod passes;
 mod references;

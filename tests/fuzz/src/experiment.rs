@@ -1,12 +1,12 @@
 //! Specs of `harness estimate`.
 
 use crate::refusal;
-use fairflight_harness::plan::{MediumLibrary, Plan};
+use fairflight_harness::estimator::{CellsSpec, EstimatorSpec, RayKnown};
+use fairflight_harness::field::{MediumLibrary, MediumSpec, ProfileSpec, RaySpec};
+use fairflight_harness::plan::Plan;
+use fairflight_harness::reader::Node;
 use fairflight_harness::reference::Truth;
-use fairflight_harness::spec::{
-    BeyondSpec, CellsSpec, ControlSpec, EstimatorSpec, Experiment, MediumKind, Node, Overrides, ProfileSpec,
-    Request, RouletteSpec, TeethSpec,
-};
+use fairflight_harness::spec::{Experiment, Overrides, Request};
 use fairflight_media::Tolerance;
 
 /// Of a sweep, so many points are planned.
@@ -41,38 +41,20 @@ fn planned(experiment: &Experiment) {
 
 /// Files are not opened: the text may name any of the machine.
 fn names_a_file(profile: &ProfileSpec) -> bool {
-    matches!(profile, ProfileSpec::Ray { medium, .. } if matches!(medium.kind, MediumKind::Vdb { .. }))
+    matches!(profile, ProfileSpec::Ray(RaySpec { medium: MediumSpec::Vdb(_), .. }))
 }
 
 /// Look-ups that are little beside reading a spec.
-const AFFORDABLE: u64 = 100_000;
+const AFFORDABLE: f64 = 100_000.0;
 
 /// The order of the look-ups and cells that preparing an estimator takes.
-fn preparation(spec: &EstimatorSpec) -> u64 {
-    match spec {
-        EstimatorSpec::DoubleParticle { control, .. } | EstimatorSpec::SingleParticle { control, .. } => {
-            match control {
-                ControlSpec::Explorers { count } => *count as u64,
-                _ => 0,
-            }
-        }
-        EstimatorSpec::Beyond(beyond) => match beyond {
-            BeyondSpec::UnbiasedRayMarching {
-                teeth, roulette: RouletteSpec::SelfTuned, segments, ..
-            } => {
-                let teeth = match teeth {
-                    TeethSpec::Given(teeth) => u64::from(*teeth),
-                    TeethSpec::Rule { .. } => 100,
-                };
-                100 * teeth * u64::from(*segments)
-            }
-            BeyondSpec::JitteredRatio {
-                bounds: fairflight_harness::spec::BoundsSpec::Cells(CellsSpec::Count(count)),
-                ..
-            }
-            | BeyondSpec::ResidualCells { cells: CellsSpec::Count(count), .. } => u64::from(*count),
-            _ => 0,
-        },
-        _ => 0,
-    }
+fn preparation(spec: &EstimatorSpec) -> f64 {
+    let cells = match spec {
+        EstimatorSpec::JitteredRatio(spec) => spec.cells.as_ref(),
+        EstimatorSpec::ResidualCells(spec) => Some(&spec.cells),
+        _ => None,
+    };
+    let cells = if let Some(CellsSpec::Count(count)) = cells { f64::from(*count) } else { 0.0 };
+    let ray = RayKnown { from: 0.0, length: 1.0, upper_bound: Some(1.0), breakpoints: 0 };
+    cells + spec.kind().work(ray).preparation
 }

@@ -2,7 +2,7 @@
 
 use super::ColourSpec;
 use crate::reader::Node;
-use crate::reader::rule::{Own, Rule, Text, Vector, vector_schema};
+use crate::reader::rule::{File, Own, Rule, Vector, vector_schema};
 use crate::{Failure, kind, registry};
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -29,8 +29,8 @@ kind! {
 kind! {
     /// Radiance from a picture, latitude and longitude.
     EnvironmentMapSpec = "environment_map" {
-        /// The picture, .exr or .pfm.
-        file: PathBuf as Text,
+        /// The picture, .exr or .pfm, relative to the file in which it is named.
+        file: PathBuf as File,
     }
 }
 

@@ -22,6 +22,7 @@ pub use volume::VolumeSpec;
 use crate::Failure;
 use crate::reader::{Node, json};
 use fairflight_scene::Camera;
+use std::path::Path;
 
 /// A scene as given.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,13 +53,21 @@ pub struct SceneOverrides {
 }
 
 impl SceneSpec {
-    /// Reads a whole spec.
+    /// Reads a whole scene; paths of files in it are relative to the working directory.
     ///
     /// # Errors
     /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
     pub fn parse(text: &str, overrides: SceneOverrides) -> Result<Self, Failure> {
+        Self::parse_in(text, Path::new(""), overrides)
+    }
+
+    /// Reads a whole scene; paths of files in it are relative to the folder `base`.
+    ///
+    /// # Errors
+    /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
+    pub fn parse_in(text: &str, base: &Path, overrides: SceneOverrides) -> Result<Self, Failure> {
         let spec = json::parse(text)?;
-        let root = Node::root(&spec).object()?;
+        let root = Node::root_in(&spec, base).object()?;
         if root.has("profile") && !root.has("camera") {
             return Err(Failure::refused("this is an experiment, no scene: `harness estimate` takes it"));
         }
