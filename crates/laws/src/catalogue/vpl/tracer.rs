@@ -23,7 +23,7 @@ const HEURISTICS: [(Heuristic, &str); 3] =
 
 /// Paths of a rate that is nowhere below the extinction see exactly 1.
 const WITHOUT_VARIANCE: u64 = 2_000;
-const WEIGHTED: u64 = 300_000;
+const WEIGHTED: u64 = 600_000;
 
 /// All.
 pub(super) fn checks() -> Vec<Check> {
