@@ -105,10 +105,10 @@ impl SurfaceSpec {
         let object = node.object()?;
         let shape = ShapeSpec::take(&object)?;
         let given = object.required("material")?;
-        let material = MaterialSpec::read(&given)?;
-        if let (MaterialSpec::Diffuse(_), false) = (&material, allow_gain) {
-            ColourSpec::read(&given.at("reflectance")?, 1.0)?;
+        if let (Some(reflectance), false) = (given.object()?.optional("reflectance"), allow_gain) {
+            ColourSpec::read(&reflectance, 1.0)?;
         }
+        let material = MaterialSpec::read(&given)?;
         let emission = object.optional("emission").map(|node| <ColourSpec as Ruled>::read(&node));
         let emission = emission.unwrap_or(Ok(ColourSpec::Gray(0.0)))?;
         object.finish()?;
