@@ -241,3 +241,17 @@ fn dense_media_are_answered_with_numbers() {
         assert!(number(&result, "/estimate/mean").is_finite(), "{estimator}: {result}");
     }
 }
+
+#[test]
+fn paths_in_a_spec_are_relative_to_it() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(fixture("eq21_64.vdb"), folder.path().join("cloud.vdb")).unwrap();
+    let spec = r#"{ "profile": { "kind": "ray", "medium": { "kind": "vdb", "file": "cloud.vdb" }, "origin": [0, 0, 0], "direction": [0, 0, 1] },
+                    "estimator": { "kind": "regular" }, "samples": 2, "seed": 1 }"#;
+    let path = folder.path().join("spec.json");
+    std::fs::write(&path, spec).unwrap();
+    let beside = harness(&["estimate", path.to_str().unwrap()], "");
+    assert_eq!(beside.code, 0, "{}", beside.stderr);
+    let elsewhere = harness(&["estimate", "-"], spec);
+    assert!(elsewhere.code == 2 && elsewhere.stderr.contains("cloud.vdb"), "{}", elsewhere.stderr);
+}
