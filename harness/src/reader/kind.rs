@@ -309,7 +309,7 @@ macro_rules! registry {
     ($(#[$doc:meta])* $Name:ident $(: $Trait:path)? { $($Variant:ident($Kind:ty)),+ $(,)? }) => {
         $(#[$doc])*
         #[derive(Clone, Debug, PartialEq)]
-        pub enum $Name { $(#[doc = concat!("See [`", stringify!($Kind), "`].")] $Variant($Kind)),+ }
+        pub enum $Name { $(#[doc = concat!("`", stringify!($Kind), "`.")] $Variant($Kind)),+ }
 
         $(impl From<$Kind> for $Name {
             fn from(kind: $Kind) -> Self {
