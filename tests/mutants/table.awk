@@ -69,7 +69,7 @@ $1 == "mutant" {
     run[$3]++; all_run++
     revisions[$8] = 1
     if ($4 == "unbuildable") { unbuildable[$3]++; all_unbuildable++ }
-    else if ($4 == "missed" && $2 in reason) { equivalent[$3]++; all_equivalent++; reasons = reasons "- `" $2 "`: " reason[$2] "\n" }
+    else if (($4 == "missed" || $4 == "equivalent") && $2 in reason) { equivalent[$3]++; all_equivalent++; reasons = reasons "- `" $2 "`: " reason[$2] "\n" }
     else {
         viable[$3]++; all_viable++
         if ($4 == "missed") missed = missed "- `" $2 "`\n"
