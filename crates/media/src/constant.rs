@@ -96,4 +96,9 @@ mod tests {
         assert!(matches!(Constant::new(1.0, f64::INFINITY), Err(FieldError::NotFinite { .. })));
         assert!(matches!(Constant::new(1.0, -1.0), Err(FieldError::TooSmall { .. })));
     }
+
+    #[test]
+    fn it_breaks_nowhere() {
+        assert!(Constant::new(0.5, 10.0).unwrap().breakpoints().is_empty());
+    }
 }
