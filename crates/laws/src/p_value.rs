@@ -35,7 +35,7 @@ pub struct PValue {
     pub of: String,
     /// The p-value.
     pub p: f64,
-    /// Which law this p-value has while the hypothesis holds.
+    /// The law of this p-value while the hypothesis holds.
     pub level: Level,
 }
 

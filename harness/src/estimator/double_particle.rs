@@ -39,7 +39,7 @@ impl EstimatorKind for DoubleParticleSpec {
         let tracking = tracking(model(), &self.sigma_samp, &self.control, profile)?;
         let variance = "variance: szirmay-kalos-2017 eq. 16, integrated over the ray";
         let trial = match (tracking.control(), tracking.sampling()) {
-            // What is asked for most: nothing to choose at each look-up.
+            // The usual case: no branch at each look-up.
             (AnyControl::None(none), AnySampling::Constant(rate)) => {
                 profile.trial(Tracking::new(model(), *none, *rate))
             }

@@ -75,7 +75,7 @@ impl EstimatorKind for HybridSpec {
     }
 }
 
-/// What a hybrid chose, in words.
+/// The choice of a hybrid, in words.
 fn chosen(hybrid: &Hybrid) -> String {
     match hybrid.choice() {
         Choice::Marching(marching) => {

@@ -115,7 +115,7 @@ impl EstimatorKind for JitteredRatioSpec {
     }
 }
 
-/// What a scene says to cells.
+/// The reason why a scene refuses cells along a ray.
 pub(super) const CELLS_OF_ONE_RAY: &str =
     "cells are given along one ray, but a scene has many: use jittered_ratio with a majorant";
 

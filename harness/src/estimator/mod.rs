@@ -88,7 +88,7 @@ registry! {
     }
 }
 
-/// What the harness knows of a kind of estimators beside its keys.
+/// A kind of estimators: its preparation, its cost, its bias.
 pub trait EstimatorKind {
     /// The estimator on one profile.
     ///
@@ -167,5 +167,5 @@ fn refuse(key: &str, reason: impl std::fmt::Display) -> Failure {
     Failure::refused(format!("{key}: {reason}"))
 }
 
-/// What a scene says of a parameter that it cannot take.
+/// The reason why a scene refuses a parameter of one ray.
 const FOR_ONE_RAY: &str = "is given along one ray, but a scene has many";

@@ -7,7 +7,7 @@ use crate::{Failure, kind, words};
 use fairflight_transmittance::{PSeries, PSeriesVersion};
 
 words! {
-    /// How the orders of a power series are chosen.
+    /// The law of the orders of a power series.
     pub(super) PSeriesWord for PSeriesVersion {
         "cmf" => PSeriesVersion::Cmf,
         "cumulative" => PSeriesVersion::Cumulative,
@@ -19,7 +19,7 @@ words! {
 kind! {
     /// Power series in the optical thickness (georgiev-2019).
     PSeriesSpec = "p_series" {
-        /// How orders are chosen.
+        /// The law of the orders.
         version: PSeriesVersion as PSeriesWord,
         /// The optical thickness about which the series is; that of the field's majorant by default.
         pivot: Option<f64> as Maybe<NonNegative> = None,

@@ -19,13 +19,13 @@ pub struct Prepared {
     pub trial: Arc<dyn Trial>,
     /// The majorant that it claims, if it needs one.
     pub claimed_majorant: Option<f64>,
-    /// How its variance is known, in words.
+    /// The source of its variance, in words.
     pub variance: String,
     /// Look-ups of the profile that preparing it cost; charged to every estimate.
     pub preparation_lookups: u64,
     /// Explorers whose fit costs time before the first estimate.
     pub explorers: Option<fairflight_transmittance::Explorers>,
-    /// Where the control or the sampling extinction is not smooth.
+    /// Distances at which the control or the sampling extinction is not smooth \[length\].
     pub breakpoints: Vec<f64>,
     /// Whether estimates must be drawn one after another, since each learns from those before it.
     pub is_sequential: bool,

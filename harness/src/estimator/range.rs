@@ -35,7 +35,7 @@ impl Knowledge {
     }
 }
 
-/// What a probability σ_t/μ objects to below the majorant μ.
+/// The objection of a probability σ_t/μ to values below 0.
 pub(super) fn below_zero(place: &str, _s: f64, sigma_t: f64) -> String {
     format!("estimator.majorant: needs sigma_t of at least 0, but sigma_t = {sigma_t} at {place}")
 }

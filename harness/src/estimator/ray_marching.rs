@@ -12,7 +12,7 @@ kind! {
     RayMarchingSpec = "ray_marching" {
         /// Look-ups per estimate.
         steps: u32 as Whole<1, MOST_POINTS>,
-        /// Whether the look-ups share one random place in their steps, instead of the middle.
+        /// True for one random place in all steps, false for their middles.
         jitter: bool as Flag,
     }
 }

@@ -12,7 +12,7 @@ use fairflight_collision::{Albedo, SingleParticle, Version};
 use serde_json::{Value, json};
 
 words! {
-    /// How the probabilities of a collision are chosen.
+    /// The rule of the probabilities of a collision.
     pub VersionWord for Version {
         "terminating" => Version::Terminating,
         "non_terminating" => Version::NonTerminating,
@@ -39,7 +39,7 @@ impl Rule<Albedo> for AlbedoNumber {
 kind! {
     /// At most one particle leaves a collision (szirmay-kalos-2017 sections 4.3 to 4.5).
     SingleParticleSpec = "single_particle" {
-        /// How the probabilities of a collision are chosen.
+        /// The rule of the probabilities of a collision.
         version: Version as VersionWord,
         /// σ_s/σ_t, which sets how often a particle scatters instead.
         albedo: Albedo as AlbedoNumber,

@@ -13,7 +13,7 @@ kind! {
         teeth: u32 as Whole<1, MOST>,
         /// The probability of stopping at a level.
         level_ratio: f64 as Number,
-        /// Whether each comb is corrected for the difference of its ends.
+        /// True to correct each comb for the difference of its ends.
         endpoint_matching: bool as Flag = true,
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn tracking<M: CollisionModel + Copy>(
     Ok(Tracking::new(model, control, sampling))
 }
 
-/// What is known of it beside its estimates.
+/// Adds the facts of a tracking estimator: scores, breakpoints, explorers, objections.
 pub(super) fn with_facts<M>(prepared: Prepared, tracking: AnyTracking<M>, profile: &AnyProfile) -> Prepared
 where
     M: CollisionModel + Clone + Debug + Send + Sync + 'static,

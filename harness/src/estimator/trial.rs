@@ -18,7 +18,7 @@ pub trait Trial: Debug + Send + Sync {
     /// Look-ups of so many estimates from the same stream.
     fn count(&self, source: &mut Seeded, estimates: u64) -> u64;
 
-    /// Whether a look-up is lawful.
+    /// True where the estimator and the declared majorant admit σ_t \[1/length\] at the distance `s` \[length\].
     fn admits(&self, s: f64, sigma_t: f64) -> bool;
 
     /// The law of one estimate, in units of T; the nodes grow where it needs more.
@@ -28,7 +28,7 @@ pub trait Trial: Debug + Send + Sync {
 /// A field behind a pointer, with its breakpoints.
 pub type AnyPieces<'a> = &'a dyn Breakpoints;
 
-/// What the harness asks of an estimator on a field: estimates with watched and counted look-ups.
+/// An estimator on a field, also where look-ups are watched and counted.
 pub trait Estimator<G: Field>:
     Copy
     + Sync

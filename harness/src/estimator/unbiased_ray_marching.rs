@@ -73,13 +73,13 @@ kind! {
         pivot: Option<f64> as Maybe<NonNegative> = None,
         /// Look-ups per comb; by the rule by default.
         teeth: Option<u32> as Maybe<Whole<1, MOST>> = None,
-        /// Whether a uniform comb is corrected for the difference of its ends.
+        /// True to correct a uniform comb for the difference of its ends.
         endpoint_matching: Option<bool> as Maybe<Flag> = None,
         /// The order of a Bernoulli comb.
         order: Option<u32> as Maybe<Whole<2, 3>> = None,
         /// The family of combs.
         comb: CombWord as CombRule = CombWord::Uniform,
-        /// When the series stops: a probability, or self_tuned.
+        /// The probability of stopping at once, or self_tuned.
         roulette: RouletteSpec as Own = RouletteSpec::USUAL,
         /// Factors of the transmittance.
         segments: u32 as Whole<1, MOST> = 1,

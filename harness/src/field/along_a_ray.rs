@@ -13,7 +13,7 @@ kind! {
         direction: DVec3 as Direction,
         /// The medium.
         medium: MediumSpec as Own,
-        /// Where s is 0.
+        /// The point at which s is 0 \[length\].
         origin: DVec3 as Vector,
         /// The greatest distance from the origin; to the far end of the medium's bounds by default.
         length: Option<f64> as Maybe<NonNegative> = None,

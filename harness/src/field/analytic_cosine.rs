@@ -12,7 +12,7 @@ kind! {
     AnalyticCosineSpec = "analytic_cosine" {
         /// A factor of the extinction.
         scale: f64 as Number = 1.0,
-        /// Where the medium is; the sphere of radius 10 around (0, 0, 10) by default.
+        /// The bounds, with vacuum outside; the sphere of radius 10 around (0, 0, 10) by default.
         bounds: Option<Bounds> as Maybe<BoundsRule> = None,
     }
 }

@@ -26,7 +26,7 @@ kind! {
         sigma_t: String as Text,
         /// An upper bound of the extinction \[1/length\], a fact that every look-up checks.
         majorant: Option<f64> as Maybe<NonNegative> = None,
-        /// Where the medium is.
+        /// The bounds, with vacuum outside.
         bounds: Bounds as BoundsRule,
     }
 }

@@ -12,7 +12,7 @@ kind! {
     HomogeneousSpec = "homogeneous" {
         /// The extinction \[1/length\].
         sigma_t: f64 as Number,
-        /// Where the medium is.
+        /// The bounds, with vacuum outside.
         bounds: Bounds as BoundsRule,
     }
 }

@@ -26,7 +26,7 @@ pub enum AnyMedium {
 
 /// Something to be done with a medium of whatever type it has. The two differ in what is known of it.
 pub trait MediumJob {
-    /// What comes of it.
+    /// The result of the job.
     type Output;
     /// Does it where only look-ups are to be had.
     fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output;

@@ -61,7 +61,7 @@ registry! {
     }
 }
 
-/// What the harness knows of a kind of profiles beside its keys.
+/// A kind of profiles: how it is built.
 pub trait ProfileKind {
     /// The profile.
     ///
@@ -70,7 +70,7 @@ pub trait ProfileKind {
     fn build(&self, library: &MediumLibrary) -> Result<AnyProfile, Failure>;
 }
 
-/// What the harness knows of a kind of media beside its keys.
+/// A kind of media: how it is built.
 pub trait MediumKind {
     /// The medium and its bounds; `key` leads to the spec.
     ///

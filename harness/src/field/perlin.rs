@@ -29,9 +29,9 @@ kind! {
         seed: u32 as Whole<0, SEEDS> = usual().seed,
         /// The factor of the noise \[1/length\].
         scale: f64 as Number = usual().scale,
-        /// What is added to it \[1/length\].
+        /// The constant added to the noise \[1/length\].
         offset: f64 as Number = usual().offset,
-        /// Where the medium is.
+        /// The bounds, with vacuum outside.
         bounds: Bounds as BoundsRule,
     }
 }

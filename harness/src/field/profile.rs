@@ -77,9 +77,9 @@ profiles! {
 
 /// Something to be done with a field of whatever type it has, per look-up.
 pub trait FieldJob {
-    /// What comes of it.
+    /// The result of the job.
     type Output;
-    /// Does it.
+    /// Runs on the field.
     fn run<F: KnownField>(self, field: &F) -> Self::Output
     where
         for<'a> &'a F: Field;

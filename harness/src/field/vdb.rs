@@ -17,9 +17,9 @@ kind! {
         grid: Option<String> as Maybe<Text> = None,
         /// A factor of the voxel values \[1/length\].
         scale: f64 as Number = 1.0,
-        /// Whether voxels below 0 are taken for negative extinctions.
+        /// True to take voxels below 0 for negative extinctions.
         allow_negative: bool as Flag = false,
-        /// Where the medium is; the box of the active voxels, grown by one, by default.
+        /// The bounds, with vacuum outside; the box of the active voxels, grown by one, by default.
         bounds: Option<Bounds> as Maybe<BoundsRule> = None,
     }
 }

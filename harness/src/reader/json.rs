@@ -20,7 +20,7 @@ pub fn parse(text: &str) -> Result<Value, Failure> {
 /// # Errors
 /// If it is an OpenVDB file, or no text at all.
 pub fn text(bytes: Vec<u8>) -> Result<String, Failure> {
-    /// What an OpenVDB file begins with.
+    /// The first bytes of an OpenVDB file.
     const OPENVDB: &[u8] = b" BDV";
     if bytes.starts_with(OPENVDB) {
         return Err(Failure::refused(

@@ -60,7 +60,7 @@ pub trait Kind: Keys {
     /// The quantity or method, and where it comes from.
     const ABOUT: &'static str;
 
-    /// What [`take_from`](Keys::take_from) cannot see key by key: which go together.
+    /// Refuses keys that do not go together, each of which keeps its rule.
     ///
     /// # Errors
     /// If some do not.

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub struct Node<'a> {
     value: &'a Value,
     path: String,
-    /// Where the paths of files begin.
+    /// The folder to which paths of files are relative.
     base: &'a Path,
 }
 

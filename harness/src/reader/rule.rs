@@ -237,7 +237,7 @@ pub fn vector_schema() -> Value {
     json!({ "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 })
 }
 
-/// What may be left out: none, or a value that keeps the rule `R`.
+/// An optional value: none, or one that keeps the rule `R`.
 #[derive(Debug)]
 pub struct Maybe<R>(PhantomData<R>);
 

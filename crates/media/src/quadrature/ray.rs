@@ -112,7 +112,7 @@ impl<F: Extinction> RayQuadrature<F> {
     }
 }
 
-/// What depends on s, σ_t and an inner integral up to s.
+/// An integrand of s, σ_t and the inner integral up to s.
 type Outer<'a, const M: usize, const K: usize> = &'a dyn Fn(f64, f64, [f64; M]) -> [f64; K];
 
 fn nested<const M: usize, const K: usize>(

@@ -19,7 +19,7 @@ registry! {
     }
 }
 
-/// What the harness knows of a kind of phase functions beside its keys.
+/// A kind of phase functions: how it is built.
 pub trait PhaseKind {
     /// The phase function.
     ///

@@ -36,7 +36,7 @@ registry! {
     }
 }
 
-/// What the harness knows of a kind of shapes beside its keys.
+/// A kind of shapes: how it is built, what it encloses.
 pub trait ShapeKind {
     /// The shape.
     ///

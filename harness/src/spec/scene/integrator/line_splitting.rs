@@ -8,7 +8,7 @@ use crate::{kind, words};
 use fairflight_transmittance::Starts;
 
 words! {
-    /// How the first steps of flights lie.
+    /// The layout of the first steps of flights.
     pub(super) StartsWord for Starts {
         "equidistant" => Starts::Equidistant,
         "independent" => Starts::Independent,
@@ -18,13 +18,13 @@ words! {
 kind! {
     /// Several first collisions per camera ray, each continued by a walk (raab-2008 section 3.1).
     LineSplittingSpec = "line_splitting" {
-        /// How particles walk.
+        /// The walks of the particles.
         walk: WalkSpec as Among,
         /// An upper bound of σ_t \[1/length\].
         majorant: f64 as NonNegative,
         /// Flights per camera ray.
         splits: u32 as Whole<1, MOST>,
-        /// Of their first steps.
+        /// The layout of their first steps.
         starts: Starts as StartsWord = Starts::Equidistant,
     }
 }

@@ -32,7 +32,7 @@ registry! {
     }
 }
 
-/// What the harness knows of a kind of integrators beside its keys.
+/// A kind of integrators: its walks, its surfaces, its bias.
 pub trait IntegratorKind {
     /// Its walks, if it has some.
     fn walk(&self) -> Option<&WalkSpec> {
@@ -44,7 +44,7 @@ pub trait IntegratorKind {
         false
     }
 
-    /// What is biased by design, if anything is.
+    /// The part that is biased by design, if any.
     fn bias(&self) -> Option<&'static str> {
         None
     }

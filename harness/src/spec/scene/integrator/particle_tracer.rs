@@ -8,14 +8,14 @@ use crate::{kind, words};
 kind! {
     /// Walks of particles (szirmay-kalos-2017 section 4.1).
     TracerSpec = "particle_tracer" {
-        /// How they walk.
+        /// The walks.
         walk: WalkSpec as Among,
-        /// Which particles walk.
+        /// The particles: from the camera, or from the lights.
         particles: Particles as ParticlesWord = Particles::Importons,
     }
 }
 
-/// Which particles walk.
+/// The particles: from the camera, or from the lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Particles {
     /// From the camera.
@@ -25,7 +25,7 @@ pub enum Particles {
 }
 
 words! {
-    /// Which particles walk.
+    /// The particles: from the camera, or from the lights.
     pub(super) ParticlesWord for Particles {
         "importons" => Particles::Importons,
         "photons" => Particles::Photons,

@@ -12,7 +12,7 @@ kind! {
     PathTracerSpec = "path_tracer" {
         /// Longer paths are cut, a bias.
         max_vertices: u32 as Whole<1, MOST_VERTICES> = MOST_VERTICES as u32,
-        /// How paths travel.
+        /// The flights, connections and weights of paths.
         transport: TransportSpec as Among,
     }
 }

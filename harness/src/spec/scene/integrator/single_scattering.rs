@@ -8,7 +8,7 @@ use crate::{kind, words};
 use fairflight_paths::Heuristic;
 use fairflight_transmittance::Starts;
 
-/// How the scattering point of single scattering is chosen.
+/// The technique that chooses the scattering point of single scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Strategy {
     /// By the transmittance that one walk estimated.
@@ -28,7 +28,7 @@ pub enum Strategy {
 }
 
 words! {
-    /// How the scattering point of single scattering is chosen.
+    /// The technique that chooses the scattering point of single scattering.
     pub(super) StrategyWord for Strategy {
         "attenuation" => Strategy::Attenuation,
         "attenuation_resampled" => Strategy::AttenuationResampled,
@@ -41,7 +41,7 @@ words! {
 }
 
 words! {
-    /// How two techniques are combined.
+    /// The heuristic that combines two techniques.
     pub(super) CombinationWord for Heuristic {
         "balance" => Heuristic::Balance,
         "power" => Heuristic::Power,
@@ -51,15 +51,15 @@ words! {
 kind! {
     /// Light that scatters once (szirmay-kalos-2017 section 4.3).
     SingleScatteringSpec = "single_scattering" {
-        /// How the scattering point is chosen.
+        /// The technique that chooses the scattering point.
         sampling: Strategy as StrategyWord,
         /// The estimator of the transmittance along the camera's ray.
         estimator: EstimatorSpec as ForAllRays,
         /// Scattering points per ray, light and technique.
         samples_per_ray: u32 as Whole<1, MOST>,
-        /// Of the first steps of the flights of line_integral.
+        /// The layout of the first steps of the flights of line_integral.
         starts: Starts as StartsWord = Starts::Equidistant,
-        /// How techniques are combined.
+        /// The heuristic that combines techniques.
         heuristic: Heuristic as CombinationWord = Heuristic::Balance,
         /// The estimator of the transmittance to the lights; that of the camera ray by default.
         shadow: Option<EstimatorSpec> as Maybe<ForAllRays> = None,

@@ -12,7 +12,7 @@ use fairflight_paths::Heuristic;
 use serde_json::{Map, Value};
 
 words! {
-    /// How next-event estimation is weighted against scattering.
+    /// The heuristic that weighs next-event estimation against scattering.
     pub(super) HeuristicWord for Heuristic {
         "balance" => Heuristic::Balance,
         "power" => Heuristic::Power,
@@ -21,13 +21,13 @@ words! {
 }
 
 keys! {
-    /// How paths among surfaces travel.
+    /// The flights, connections and weights of paths among surfaces.
     pub TransportSpec {
-        /// How paths fly through the medium.
+        /// The walks of paths through the medium.
         walk: WalkSpec as WithDefaults,
         /// Transmittance of connections; by default in closed form in a homogeneous medium, else ratio tracking.
         estimator: Option<EstimatorSpec> as Maybe<ForAllRays> = None,
-        /// How next-event estimation is weighted against scattering.
+        /// The heuristic that weighs next-event estimation against scattering.
         heuristic: Heuristic as HeuristicWord = Heuristic::Balance,
     }
 }
@@ -35,15 +35,15 @@ keys! {
 keys! {
     /// A walk whose version and sampling extinction may be left out.
     pub(super) UsualWalk {
-        /// How the probabilities of a collision are chosen.
+        /// The rule of the probabilities of a collision.
         version: Version as VersionWord = Version::NonTerminating,
         /// The sampling extinction \[1/length\], as of other walks; the greatest extinction of the medium by default.
         sigma_samp: SamplingFieldSpec as Own = SamplingFieldSpec::FromMedium,
-        /// Whether the channels of a colour share a walk.
+        /// One walk for all channels of a colour, or one for each.
         colour: Collisions as ColourWord = Collisions::Shared,
         /// More collisions of one particle are cut off, a bias; none are by default.
         max_collisions: u64 as Whole<1, { u64::MAX }> = u64::MAX,
-        /// Whether a walk may be run that has no second moment.
+        /// True to run a walk that has no second moment.
         allow_supercritical: bool as Flag = false,
     }
 }

@@ -16,11 +16,11 @@ kind! {
     VplSpec = "vpl" {
         /// The bound b of the geometric term \[1/length²\]: a number, null (unclamped), or "scene" (raab-2008 section 4.2).
         clamp: ClampSpec as Own,
-        /// What is done about bounding; null is nothing.
+        /// The compensation of bounding; null for none.
         compensation: Option<CompensationOptions> as CompensationRule = None,
-        /// Which part of the light is rendered.
+        /// The part of the light that is rendered.
         component: ComponentSpec as ComponentWord = ComponentSpec::All,
-        /// How light paths and eye rays travel.
+        /// The flights, connections and weights of light paths and eye rays.
         transport: TransportSpec as Among,
         /// Light paths per set.
         light_paths: u32 as Whole<1, MOST>,
@@ -28,7 +28,7 @@ kind! {
         eye_samples: u32 as Whole<1, MOST> = 1,
         /// Cells along each axis of the local means of the extinction.
         local_mean_cells: u32 as Whole<1, MOST_CELLS> = 16,
-        /// Within this distance from the camera all virtual point lights are kept, and further away the fewer the further.
+        /// The distance from the camera within which all virtual point lights are kept; beyond, roulette keeps (distance/r)² of them \[length\].
         keep_near: Option<f64> as Maybe<Positive> = None,
     }
     check VplSpec::check
@@ -101,7 +101,7 @@ impl Ruled for ClampSpec {
 }
 
 words! {
-    /// How compensation connects.
+    /// The strategy by which compensation connects vertices.
     pub(super) StrategyWord for Strategy {
         "one_to_many" => Strategy::OneToMany,
         "many_to_one" => Strategy::ManyToOne,
@@ -110,7 +110,7 @@ words! {
 }
 
 words! {
-    /// Where compensation places its vertices.
+    /// The law of the distance of a vertex of the compensation.
     pub(super) PlacementWord for Placement {
         "free_flight" => Placement::FreeFlight,
         "locally_homogeneous" => Placement::LocallyHomogeneous,
@@ -118,7 +118,7 @@ words! {
 }
 
 words! {
-    /// How compensation takes transmittance.
+    /// The transmittance within a step of the compensation.
     pub(super) TransmittanceWord for TransmittanceUse {
         "exact" => TransmittanceUse::Exact,
         "approximate" => TransmittanceUse::Approximate,
@@ -126,7 +126,7 @@ words! {
 }
 
 words! {
-    /// Which surfaces compensation sees.
+    /// The surfaces that block connections of the compensation.
     pub(super) VisibilityWord for Visibility {
         "full" => Visibility::Full,
         "local" => Visibility::Local,
@@ -135,17 +135,17 @@ words! {
 }
 
 keys! {
-    /// What is done about bounding, as given.
+    /// The compensation of bounding, as given.
     pub(super) CompensationKeys {
-        /// How vertices are connected.
+        /// The strategy by which vertices are connected.
         strategy: Strategy as StrategyWord,
-        /// Where vertices are placed.
+        /// The law of the distance of a vertex.
         placement: Placement as PlacementWord = Placement::FreeFlight,
-        /// How transmittance is taken.
+        /// The transmittance within a step.
         transmittance: TransmittanceUse as TransmittanceWord = TransmittanceUse::Exact,
         /// Steps; null for unlimited.
         steps: Option<u32> as Nullable<Whole<0, MOST_VERTICES>> = None,
-        /// Which surfaces are seen.
+        /// The surfaces that block connections.
         visibility: Visibility as VisibilityWord = Visibility::Full,
     }
 }

@@ -11,15 +11,15 @@ use serde_json::{Value, json};
 keys! {
     /// A walk with its parameters.
     pub WalkSpec {
-        /// How the probabilities of a collision are chosen.
+        /// The rule of the probabilities of a collision.
         version: Version as VersionWord,
         /// The sampling extinction \[1/length\]: a number, or cells, factor and floor of a grid that is fitted to the medium.
         sigma_samp: SamplingFieldSpec as Own,
-        /// Whether the channels of a colour share a walk.
+        /// One walk for all channels of a colour, or one for each.
         colour: Collisions as ColourWord = Collisions::Shared,
         /// More collisions of one particle are cut off, a bias; none are by default.
         max_collisions: u64 as Whole<1, { u64::MAX }> = u64::MAX,
-        /// Whether a walk may be run that has no second moment.
+        /// True to run a walk that has no second moment.
         allow_supercritical: bool as Flag = false,
     }
 }
@@ -42,7 +42,7 @@ pub enum SamplingFieldSpec {
     },
 }
 
-/// Whether the channels of a colour share a walk.
+/// One walk for all channels of a colour, or one for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Collisions {
     /// One walk for all channels.
@@ -52,7 +52,7 @@ pub enum Collisions {
 }
 
 words! {
-    /// Whether the channels of a colour share a walk.
+    /// One walk for all channels of a colour, or one for each.
     pub(super) ColourWord for Collisions {
         "shared" => Collisions::Shared,
         "separate" => Collisions::Separate,
