@@ -21,6 +21,12 @@ impl<F: Extinction> Bounded<F> {
         FieldError::check_at_least("majorant", 0.0, majorant)?;
         Ok(Self { field, majorant })
     }
+
+    /// Another field with the same claim, which is not checked again.
+    #[inline]
+    pub fn with_field<G: Extinction>(&self, field: G) -> Bounded<G> {
+        Bounded { field, majorant: self.majorant }
+    }
 }
 
 impl<F: Extinction> Extinction for Bounded<F> {

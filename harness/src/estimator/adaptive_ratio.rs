@@ -20,9 +20,10 @@ kind! {
 impl AdaptiveRatioSpec {
     fn estimator(&self, key: &str) -> Result<ByMajorant<AdaptiveRatio>, Failure> {
         let at = |what: &str| format!("{key}.{what}");
-        ByMajorant::new((), self.majorant).map_err(|error| refuse(&at("majorant"), error))?;
+        // The claim first, as it stands first.
+        let claim = ByMajorant::new((), self.majorant).map_err(|error| refuse(&at("majorant"), error))?;
         let estimator = AdaptiveRatio::new(self.floor).map_err(|error| refuse(&at("floor"), error))?;
-        ByMajorant::new(estimator, self.majorant).map_err(|error| refuse(&at("majorant"), error))
+        Ok(claim.with(estimator))
     }
 }
 

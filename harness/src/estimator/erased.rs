@@ -3,7 +3,8 @@
 //! A claim (a majorant, bounds in cells) is a parameter of the estimator, not knowledge of the field: with it an estimator takes any field.
 
 use fairflight_media::{
-    BoundCell, Bounded, BoundedInCells, Extinction, FieldError, InCells, RayQuadrature, Tolerance, Vacuum,
+    BoundCell, Bounded, BoundedInCells, Extinction, FieldError, InCells, Majorant, RayQuadrature, Tolerance,
+    Vacuum,
 };
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
@@ -13,22 +14,24 @@ use std::fmt::Debug;
 #[derive(Clone, Copy, Debug)]
 pub struct ByMajorant<E> {
     estimator: E,
-    majorant: f64,
+    /// Over nothing: the field comes with each estimate.
+    claim: Bounded<Vacuum>,
 }
 
 impl<E> ByMajorant<E> {
     /// # Errors
     /// If no field can have that majorant.
     pub(super) fn new(estimator: E, majorant: f64) -> Result<Self, FieldError> {
-        Bounded::new(Vacuum::new(0.0), majorant).map(|_| Self { estimator, majorant })
+        Bounded::new(Vacuum::new(0.0), majorant).map(|claim| Self { estimator, claim })
+    }
+
+    /// Another estimator with the same claim.
+    pub(super) fn with<O>(self, estimator: O) -> ByMajorant<O> {
+        ByMajorant { estimator, claim: self.claim }
     }
 
     pub(super) fn majorant(&self) -> f64 {
-        self.majorant
-    }
-
-    fn bounded<F: Extinction>(&self, field: F) -> Bounded<F> {
-        Bounded::new(field, self.majorant).expect("the claim is checked when it is made")
+        self.claim.majorant()
     }
 }
 
@@ -38,18 +41,18 @@ where
 {
     #[inline]
     fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
-        self.estimator.estimate(&self.bounded(field), source)
+        self.estimator.estimate(&self.claim.with_field(field), source)
     }
     #[inline]
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
-        self.estimator.admits(&self.bounded(field), s, sigma_t)
+        self.estimator.admits(&self.claim.with_field(field), s, sigma_t)
     }
 }
 
 impl<F: Extinction + Copy, E: ClosedForm<Bounded<F>>> ClosedForm<F> for ByMajorant<E> {
     fn theory(&self, nodes: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let field = *nodes.field();
-        let mut bounded = nodes.with_field(self.bounded(field));
+        let mut bounded = nodes.with_field(self.claim.with_field(field));
         let theory = self.estimator.theory(&mut bounded, tau, tolerance);
         *nodes = bounded.with_field(field);
         theory

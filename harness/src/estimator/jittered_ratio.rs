@@ -63,10 +63,10 @@ impl JitteredRatioSpec {
 
     fn below_majorant(&self, majorant: f64, key: &str) -> Result<ByMajorant<JitteredRatio>, Failure> {
         let at = |what: &str| format!("{key}.{what}");
-        let estimator = JitteredRatio::new(self.epsilon).map_err(|error| refuse(&at("epsilon"), error));
         // The claim first, as it stands first.
-        ByMajorant::new((), majorant).map_err(|error| refuse(&at("majorant"), error))?;
-        ByMajorant::new(estimator?, majorant).map_err(|error| refuse(&at("majorant"), error))
+        let claim = ByMajorant::new((), majorant).map_err(|error| refuse(&at("majorant"), error))?;
+        let estimator = JitteredRatio::new(self.epsilon).map_err(|error| refuse(&at("epsilon"), error))?;
+        Ok(claim.with(estimator))
     }
 }
 
