@@ -1,11 +1,9 @@
 //! The lights of a scene.
 
 use super::ColourSpec;
-use crate::reader::Node;
-use crate::reader::rule::{File, Own, Rule, Vector, vector_schema};
-use crate::{Failure, kind, registry};
+use crate::reader::rule::{Direction, File, Own, Vector};
+use crate::{kind, registry};
 use glam::DVec3;
-use serde_json::{Value, json};
 use std::path::PathBuf;
 
 registry! {
@@ -48,29 +46,9 @@ kind! {
     /// Parallel light from infinitely far away.
     DirectionalSpec = "directional" {
         /// The direction in which it travels.
-        direction: DVec3 as Sight,
+        direction: DVec3 as Direction,
         /// The irradiance of a plane that it meets at a right angle.
         irradiance: ColourSpec as Own,
-    }
-}
-
-/// Three numbers that can be normalised.
-#[derive(Debug)]
-pub(super) struct Sight;
-
-impl Rule<DVec3> for Sight {
-    fn read(node: &Node<'_>) -> Result<DVec3, Failure> {
-        let vector = node.vector()?;
-        if vector.try_normalize().is_none() {
-            return Err(node.refuse("must not be zero"));
-        }
-        Ok(vector)
-    }
-    fn written(value: &DVec3) -> Value {
-        json!(value.to_array())
-    }
-    fn schema() -> Value {
-        vector_schema()
     }
 }
 
