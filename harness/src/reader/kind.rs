@@ -155,16 +155,6 @@ impl Listed {
         self
     }
 
-    /// The keys as words: those that may be left out in brackets.
-    #[must_use]
-    pub fn signature(&self) -> String {
-        let keys = self
-            .keys
-            .iter()
-            .map(|key| if key.optional { format!("[{}]", key.name) } else { key.name.to_owned() });
-        keys.collect::<Vec<_>>().join(", ")
-    }
-
     /// The JSON Schema of an object of this kind.
     #[must_use]
     pub fn schema(&self) -> Value {

@@ -45,52 +45,50 @@ pub trait Rule<T> {
     }
 }
 
-/// A finite number.
-#[derive(Debug)]
-pub struct Number;
+/// Defines a rule by how a value is read and by its JSON Schema; the value is written as serde writes it.
+macro_rules! rules {
+    ($($(#[$doc:meta])* $Rule:ident for $Type:ty { $read:expr, $schema:tt })+) => {
+        $(
+            $(#[$doc])*
+            #[derive(Debug)]
+            pub struct $Rule;
 
-impl Rule<f64> for Number {
-    fn read(node: &Node<'_>) -> Result<f64, Failure> {
-        node.number()
-    }
-    fn written(value: &f64) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "number" })
-    }
+            impl Rule<$Type> for $Rule {
+                fn read(node: &Node<'_>) -> Result<$Type, Failure> {
+                    $read(node)
+                }
+                fn written(value: &$Type) -> Value {
+                    json!(value)
+                }
+                fn schema() -> Value {
+                    json!($schema)
+                }
+            }
+        )+
+    };
 }
 
-/// A number of at least 0.
-#[derive(Debug)]
-pub struct NonNegative;
+rules! {
+    /// A finite number.
+    Number for f64 { Node::number, { "type": "number" } }
 
-impl Rule<f64> for NonNegative {
-    fn read(node: &Node<'_>) -> Result<f64, Failure> {
-        node.non_negative()
-    }
-    fn written(value: &f64) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "number", "minimum": 0 })
-    }
-}
+    /// A number of at least 0.
+    NonNegative for f64 { Node::non_negative, { "type": "number", "minimum": 0 } }
 
-/// A number above 0.
-#[derive(Debug)]
-pub struct Positive;
+    /// A number above 0.
+    Positive for f64 { Node::positive, { "type": "number", "exclusiveMinimum": 0 } }
 
-impl Rule<f64> for Positive {
-    fn read(node: &Node<'_>) -> Result<f64, Failure> {
-        node.positive()
-    }
-    fn written(value: &f64) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "number", "exclusiveMinimum": 0 })
-    }
+    /// true or false.
+    Flag for bool { Node::boolean, { "type": "boolean" } }
+
+    /// A list of finite numbers, not empty.
+    Numbers for Vec<f64> { Node::numbers, { "type": "array", "items": { "type": "number" }, "minItems": 1 } }
+
+    /// A string.
+    Text for String { |node: &Node<'_>| node.text().map(str::to_owned), { "type": "string" } }
+
+    /// The path of a file, relative to the file in which it stands.
+    File for PathBuf { Node::file, { "type": "string" } }
 }
 
 /// A whole number from `LEAST` to `MOST`.
@@ -128,70 +126,6 @@ impl<const LEAST: u64, const MOST: u64> Rule<u32> for Whole<LEAST, MOST> {
     }
     fn schema() -> Value {
         Self::described()
-    }
-}
-
-/// true or false.
-#[derive(Debug)]
-pub struct Flag;
-
-impl Rule<bool> for Flag {
-    fn read(node: &Node<'_>) -> Result<bool, Failure> {
-        node.boolean()
-    }
-    fn written(value: &bool) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "boolean" })
-    }
-}
-
-/// A list of finite numbers, not empty.
-#[derive(Debug)]
-pub struct Numbers;
-
-impl Rule<Vec<f64>> for Numbers {
-    fn read(node: &Node<'_>) -> Result<Vec<f64>, Failure> {
-        node.numbers()
-    }
-    fn written(value: &Vec<f64>) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "array", "items": { "type": "number" }, "minItems": 1 })
-    }
-}
-
-/// A string.
-#[derive(Debug)]
-pub struct Text;
-
-impl Rule<String> for Text {
-    fn read(node: &Node<'_>) -> Result<String, Failure> {
-        node.text().map(str::to_owned)
-    }
-    fn written(value: &String) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "string" })
-    }
-}
-
-/// The path of a file, relative to the file in which it stands.
-#[derive(Debug)]
-pub struct File;
-
-impl Rule<PathBuf> for File {
-    fn read(node: &Node<'_>) -> Result<PathBuf, Failure> {
-        node.file()
-    }
-    fn written(value: &PathBuf) -> Value {
-        json!(value)
-    }
-    fn schema() -> Value {
-        json!({ "type": "string" })
     }
 }
 
