@@ -1,6 +1,6 @@
 //! Regular tracking: the closed form itself.
 
-use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use crate::{ClosedForm, Theory, TransmittanceEstimator};
 use fairflight_media::{OpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -29,14 +29,7 @@ impl<F: OpticalThickness> ClosedForm<F> for Regular {
         _optical_thickness: f64,
         _tolerance: Tolerance,
     ) -> Theory {
-        Theory {
-            relative_mean: 1.0,
-            relative_central: [0.0; HIGHEST_MOMENT - 1],
-            log_relative_variance: f64::NEG_INFINITY,
-            relative_variance_error: 0.0,
-            relative_variance_bound: f64::INFINITY,
-            lookups: 0.0,
-        }
+        Theory::exact()
     }
 }
 

@@ -22,6 +22,19 @@ pub struct Theory {
 }
 
 impl Theory {
+    /// The transmittance itself, without variance or look-ups.
+    #[must_use]
+    pub fn exact() -> Self {
+        Self {
+            relative_mean: 1.0,
+            relative_central: [0.0; HIGHEST_MOMENT - 1],
+            log_relative_variance: f64::NEG_INFINITY,
+            relative_variance_error: 0.0,
+            relative_variance_bound: f64::INFINITY,
+            lookups: 0.0,
+        }
+    }
+
     /// An unbiased estimate of which no moment beyond the mean has a closed form; `lookups` is NaN where their number has none
     /// either.
     #[must_use]

@@ -5,7 +5,7 @@ use crate::field::AnyProfile;
 use crate::{Failure, kind};
 use fairflight_media::{Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
 
 kind! {
     /// exp(−τ) in closed form, where the profile has one.
@@ -28,14 +28,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for Exact {
 
 impl<F: Extinction> ClosedForm<F> for Exact {
     fn theory(&self, _nodes: &mut RayQuadrature<F>, _tau: f64, _tolerance: Tolerance) -> Theory {
-        Theory {
-            relative_mean: 1.0,
-            relative_central: [0.0; HIGHEST_MOMENT - 1],
-            log_relative_variance: f64::NEG_INFINITY,
-            relative_variance_error: 0.0,
-            relative_variance_bound: f64::INFINITY,
-            lookups: 0.0,
-        }
+        Theory::exact()
     }
 }
 
