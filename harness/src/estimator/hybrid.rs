@@ -2,6 +2,7 @@
 
 use super::erased::ByMajorant;
 use super::pilots::{PILOTS, experience};
+use super::unbiased_ray_marching::FEW_SEGMENTS;
 use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Maybe, NonNegative};
@@ -17,9 +18,6 @@ kind! {
 }
 
 const OF_ONE_RAY: &str = "hybrid chooses for one ray, but a scene has many";
-
-/// More segments than this, and their closed form is costly.
-const FEW_SEGMENTS: u32 = 8;
 
 impl Prepared {
     /// The hybrid that chooses by `experience`, with a budget of so many look-ups per unit of the majorant's depth.

@@ -40,46 +40,51 @@ kind! {
     }
 }
 
-const QUADRATURE: &str = "variance: closed form, integrated over the ray";
+/// `$body` with `$estimator` for the estimator of a version: each is a type of its own.
+macro_rules! of_version {
+    ($version:expr, $estimator:ident => $body:expr) => {
+        match $version {
+            NextFlightKind::Delta => {
+                let $estimator = NextFlight::new(NextFlightVersion::Delta);
+                $body
+            }
+            NextFlightKind::Ratio => {
+                let $estimator = NextFlight::new(NextFlightVersion::Ratio);
+                $body
+            }
+            NextFlightKind::Unidirectional => {
+                let $estimator = Unidirectional;
+                $body
+            }
+            NextFlightKind::Bidirectional => {
+                let $estimator = Bidirectional;
+                $body
+            }
+        }
+    };
+}
+
+impl NextFlightSpec {
+    fn claim(&self, key: &str) -> Result<ByMajorant<()>, Failure> {
+        ByMajorant::new((), self.majorant).map_err(|error| refuse(&format!("{key}.majorant"), error))
+    }
+}
 
 impl EstimatorKind for NextFlightSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let error = |error| refuse("estimator.majorant", error);
-        macro_rules! behind_a_pointer {
-            ($estimator:expr) => {
-                profile.erased_trial(ByMajorant::new($estimator, self.majorant).map_err(error)?)
-            };
-        }
-        let (trial, variance) = match self.version {
-            NextFlightKind::Delta => {
-                (behind_a_pointer!(NextFlight::new(NextFlightVersion::Delta)), QUADRATURE)
-            }
-            NextFlightKind::Ratio => {
-                (behind_a_pointer!(NextFlight::new(NextFlightVersion::Ratio)), QUADRATURE)
-            }
-            NextFlightKind::Unidirectional => (behind_a_pointer!(Unidirectional), QUADRATURE),
-            NextFlightKind::Bidirectional => (behind_a_pointer!(Bidirectional), "variance: no closed form"),
+        let claim = self.claim("estimator")?;
+        let trial = of_version!(self.version, estimator => profile.erased_trial(claim.with(estimator)));
+        let variance = match self.version {
+            NextFlightKind::Bidirectional => "variance: no closed form",
+            _ => "variance: closed form, integrated over the ray",
         };
         let range = profile.field().knowledge().of_null_collisions(self.majorant);
         Ok(Prepared::new("next_flight", trial, variance).claiming(self.majorant).within(range))
     }
 
     fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        let error = |error| refuse(&format!("{key}.majorant"), error);
-        Ok(match self.version {
-            NextFlightKind::Delta => Shadow::erased(
-                ByMajorant::new(NextFlight::new(NextFlightVersion::Delta), self.majorant).map_err(error)?,
-            ),
-            NextFlightKind::Ratio => Shadow::erased(
-                ByMajorant::new(NextFlight::new(NextFlightVersion::Ratio), self.majorant).map_err(error)?,
-            ),
-            NextFlightKind::Unidirectional => {
-                Shadow::erased(ByMajorant::new(Unidirectional, self.majorant).map_err(error)?)
-            }
-            NextFlightKind::Bidirectional => {
-                Shadow::erased(ByMajorant::new(Bidirectional, self.majorant).map_err(error)?)
-            }
-        })
+        let claim = self.claim(key)?;
+        Ok(of_version!(self.version, estimator => Shadow::erased(claim.with(estimator))))
     }
 
     fn work(&self, ray: RayKnown) -> Work {

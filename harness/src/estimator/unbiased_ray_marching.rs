@@ -88,7 +88,7 @@ kind! {
 }
 
 /// More segments than this, and their closed form is costly.
-const FEW_SEGMENTS: u32 = 8;
+pub(super) const FEW_SEGMENTS: u32 = 8;
 
 impl UnbiasedRayMarchingSpec {
     /// One segment of so many teeth in a comb of some shape.
