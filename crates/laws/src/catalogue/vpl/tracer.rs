@@ -33,7 +33,8 @@ pub(super) fn checks() -> Vec<Check> {
         furnace("medium", cloud, 3.0, WITHOUT_VARIANCE),
         furnace("surfaces in a medium", eq21, 3.0, WITHOUT_VARIANCE),
         furnace("mirror and glass in a medium", shiny, 3.0, WITHOUT_VARIANCE),
-        // r = 1.08: energies grow by 1.15 at a collision, their fourth power by 1.8, which fewer than half of the paths come to again.
+        // r = 1.08: energies grow by 1.15 at a collision, their fourth power by 1.75. Over fifty seeds the normal approximation asked
+        // for 0.493 of N, with a relative standard deviation of 1.3 %; at r = 1.25 it differed a thousandfold between seeds.
         furnace("surfaces in a medium, below", || open(homogeneous(1.0)), 0.93, WEIGHTED),
     ];
     for (heuristic, name) in HEURISTICS {
