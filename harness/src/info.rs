@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &InfoArguments, stdout: &mut dyn Write) -> Result<i
     Ok(DONE)
 }
 
-/// The grids for a person, and a scene with the one that a medium takes by itself.
+/// The grids for a person, and a scene with `density`, or with the first that can be a medium.
 fn described(file: &Path, grids: &[Grid]) -> String {
     let mut text = String::new();
     let list = |values: [f64; 3]| values.map(|value| format!("{value:.6}")).join(", ");

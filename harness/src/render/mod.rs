@@ -53,8 +53,8 @@ pub(crate) fn run(
     let text = read(&arguments.scene, stdin).map_err(in_scene)?;
     let overrides = SceneOverrides { samples_per_pixel: arguments.samples_per_pixel, seed: arguments.seed };
     let spec = SceneSpec::parse_in(&text, folder_of(&arguments.scene), overrides).map_err(in_scene)?;
-    let library = MediumLibrary::default();
-    let plan = ScenePlan::of(&spec, &library).map_err(in_scene)?;
+    let media = MediumLibrary::default();
+    let plan = ScenePlan::of(&spec, &media).map_err(in_scene)?;
     if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {
         return Err(Failure::refused(
             "--time-limit: photons come in replicas of the whole image, not in passes",
@@ -63,7 +63,7 @@ pub(crate) fn run(
     let length = if arguments.time_limit.is_some() { work::Length::Limited } else { work::Length::Whole };
     let bounds = (Budget::of(arguments.budget), length);
     let warning = environment
-        .on_threads(arguments.threads, || work::check(&spec, &plan, &library, bounds))
+        .on_threads(arguments.threads, || work::check(&spec, &plan, &media, bounds))
         .map_err(in_scene)?;
     // Nobody is left to tell if standard error is closed.
     if let Some(warning) = warning {
@@ -73,7 +73,7 @@ pub(crate) fn run(
     // Before there is a file, and until all are in place: who interrupts gets what is done.
     let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
     let reference = reference(arguments, &plan)?;
-    let job = Job { name, spec, library, reference, plan, exposure: OnceLock::new(), environment };
+    let job = Job { name, spec, media, reference, plan, exposure: OnceLock::new(), environment };
     outputs.prepare()?;
 
     let (painted, (image, statistics), exposure) = environment.on_threads(arguments.threads, || {
@@ -112,7 +112,7 @@ fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Im
 struct Job<'a> {
     name: String,
     spec: SceneSpec,
-    library: MediumLibrary,
+    media: MediumLibrary,
     plan: ScenePlan,
     reference: Option<(Image, String)>,
     /// Of every picture, once it was asked for.
@@ -182,7 +182,7 @@ impl Job<'_> {
             return Ok(*exposure);
         }
         let exposure = match outputs.tone_mapped().next() {
-            Some(_) => pilot::exposure(&self.spec, &self.library)
+            Some(_) => pilot::exposure(&self.spec, &self.media)
                 .map_err(|failure| self.in_scene(failure.within("exposure")))?,
             None => Exposure::default(),
         };
@@ -216,8 +216,8 @@ mod tests {
             let reference = Image::new(width, height, vec![[value; 3]; width * height]);
             let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
             let reference = Some((reference, "reference.pfm".to_owned()));
-            let (spec, library, exposure) = (spec.clone(), MediumLibrary::default(), OnceLock::new());
-            Job { name: String::new(), spec, library, plan, reference, exposure, environment: &environment }
+            let (spec, media, exposure) = (spec.clone(), MediumLibrary::default(), OnceLock::new());
+            Job { name: String::new(), spec, media, plan, reference, exposure, environment: &environment }
         };
         let mut painting = Painting::new(&plan);
         painting.add_pass(&|_| ()).unwrap();
