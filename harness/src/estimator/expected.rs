@@ -104,9 +104,9 @@ impl RayKnown {
         if width > 0.0 && extinction != 0.0 { extinction * width } else { 0.0 }
     }
 
-    /// The optical thickness of the declared majorant; 0 without one.
+    /// The optical thickness of the declared majorant, 0 at least; 0 without one.
     pub(super) fn declared_depth(self) -> f64 {
-        self.depth(self.upper_bound.unwrap_or(0.0))
+        self.depth(self.upper_bound.unwrap_or(0.0).max(0.0))
     }
 
     /// The sum over cells of what `of` makes of the optical thickness by which each may vary.
@@ -206,6 +206,25 @@ mod tests {
             let (work, found) = promised_and_found(estimator);
             let Between(least, most) = work.estimate else { panic!("{estimator}: {work:?}") };
             assert!(least <= found && found <= 1.01 * most, "{estimator}: {least} to {most}, found {found}");
+        }
+    }
+
+    /// The rule for teeth takes no negative optical thickness.
+    #[test]
+    fn a_bound_below_0_promises_the_work_of_a_vacuum() {
+        for estimator in [r#"{ "kind": "unbiased_ray_marching" }"#, r#"{ "kind": "hybrid" }"#] {
+            let work = |sigma_t: f64| {
+                let spec = format!(
+                    r#"{{ "profile": {{ "kind": "constant", "sigma_t": {sigma_t}, "length": 1 }},
+                          "estimator": {estimator}, "samples": 1, "seed": 1 }}"#
+                );
+                let Ok(Request::Single(experiment)) = Request::parse(&spec, Overrides::default()) else {
+                    panic!("{estimator}")
+                };
+                let profile = experiment.profile.kind().build(&MediumLibrary::default()).unwrap();
+                Work::on(&profile, &experiment.estimator).estimate.most()
+            };
+            assert_eq!(work(-0.1), work(0.0));
         }
     }
 
