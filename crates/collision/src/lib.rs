@@ -18,6 +18,16 @@
 //! | [`SingleParticle`] adaptive | SimulateParticle, section 4.1 | every r |
 //!
 //! Transmittance keeps the transmitted branch only; free flight and particle tracing keep both.
+//!
+//! ```
+//! use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
+//!
+//! // A sampling extinction of half the extinction, r = 2: the transmitted particle carries a negative weight.
+//! let model = DoubleParticle { albedo: Albedo::new(0.9).unwrap() };
+//! assert!(model.admits(2.0));
+//! assert_eq!(model.transmitted(2.0).moment(1), 1.0 - 2.0);
+//! assert_eq!(model.scattered(2.0).moment(1), 0.9 * 2.0);
+//! ```
 
 mod branch;
 mod double_particle;

@@ -4,6 +4,24 @@
 //! gray scene carries no colour, a homogeneous medium no look-up, a scene without surfaces no intersection.
 //!
 //! Directions of travel are those of importons (from the camera) unless said otherwise; radiance is symmetric.
+//!
+//! ```
+//! use fairflight_media::phase::Isotropic;
+//! use fairflight_media::{Bounds, Extinction, Homogeneous, OpticalThickness};
+//! use fairflight_scene::{Camera, Volume};
+//! use glam::DVec3;
+//!
+//! // A ball of haze of radius 1, seen from a distance of 5 in one pixel.
+//! let volume = Volume {
+//!     medium: Homogeneous::new(0.5).unwrap(),
+//!     bounds: Bounds::sphere(DVec3::ZERO, 1.0).unwrap(),
+//!     albedo: 0.9,
+//!     phase: Isotropic,
+//! };
+//! let camera = Camera::new(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, 30.0, [1, 1]).unwrap();
+//! let ray = volume.enter(&camera.ray([0, 0], [0.5, 0.5]), None).expect("the middle of the pixel meets the ball");
+//! assert!((ray.optical_thickness(0.0, ray.length()) - 0.5 * 2.0).abs() < 1e-12);
+//! ```
 
 mod background;
 mod camera;

@@ -7,6 +7,18 @@
 //! * [`Scripted`]: a fixed list that panics when it is exhausted: exact algebra and draw counts in tests.
 //! * [`Counting`]: how many variates a sampler draws.
 //! * [`points`]: the points of [`Sobol`], [`Halton`], [`Hammersley`] and [`LatinHypercube`], randomised, each a source of its own.
+//!
+//! ```
+//! use fairflight_sources::{Scripted, Seeded, UniformSource, derive_seed};
+//!
+//! // The third stream of seed 7: the same numbers on any machine and any thread.
+//! let mut source = Seeded::new(derive_seed(7, 2));
+//! assert!((0.0..1.0).contains(&source.next_uniform()));
+//!
+//! // In a test: the variates are known, so the distance is.
+//! let mut source = Scripted::new([0.0]);
+//! assert_eq!(source.next_exponential(), 0.0);
+//! ```
 
 mod counting;
 pub mod points;

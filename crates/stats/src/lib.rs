@@ -6,6 +6,18 @@
 //! against a whole distribution: [`chi_square()`] by cells, [`kolmogorov_smirnov()`] by its distribution function.
 //!
 //! The crate knows numbers only: no light transport, no files, clocks, threads or random sources.
+//!
+//! ```
+//! use fairflight_stats::{Moments, Reference, Scores, judge};
+//!
+//! // Estimates of T = 0.1 that are 0 or 1: the number of ones has a binomial law, and the test is exact.
+//! let estimates: Moments = (0..100_000).map(|i| f64::from(i % 10 == 0)).collect();
+//! let reference = Reference { scores: Scores::TwoValued { high: 1.0 }, ..Reference::exact(0.1) };
+//! let verdict = judge(&estimates, &reference, 1e-6);
+//! assert_eq!(verdict.sound, Some(true));
+//! // A bias of this size would have been found with a probability of 0.99.
+//! assert!(verdict.detectable_relative_bias.unwrap() < 0.07);
+//! ```
 
 mod evidence;
 mod inequalities;
