@@ -1,12 +1,13 @@
 //! Verdicts on lawful runs at random: `cargo bench --bench verdicts -- [COUNT] [EARLIER]`.
 //!
-//! A line per run on standard output: index, profile, estimator, N, the verdict, the verdict with every estimate times 1.01 and its
-//! z-score by the closed variance, and the reason. The table on standard error counts them by kind; with the output of an EARLIER
-//! build, it lists what that rejected and this one does not.
+//! A line per run on standard output, as soon as it is done: index, profile, estimator, N, the verdict, the verdict with every estimate
+//! times 1.01 and its z-score by the closed variance, CPU seconds, and the reason. The table on standard error counts them by kind; with
+//! the output of an EARLIER build, it lists what that rejected and this one does not.
 
 #[path = "../tests/program/lawful_runs.rs"]
 mod lawful_runs;
 
+use cpu_time::ThreadTime;
 use lawful_runs::{LawfulRun, Outcome, lawful_run, outcome};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -29,16 +30,16 @@ fn kind(run: &LawfulRun) -> String {
     format!("{} {}", text("kind"), text("version")).trim().to_owned()
 }
 
-fn line(index: u32, run: &LawfulRun, outcome: &Result<Outcome, String>) -> String {
+fn line(index: u32, run: &LawfulRun, outcome: &Result<Outcome, String>, seconds: f64) -> String {
     let samples = &run.spec["samples"];
     let head = format!("{index}\t{}\t{}\t{samples}", run.family, kind(run));
     match outcome {
-        Err(why) => format!("{head}\trefused\trefused\t-\t{why}"),
+        Err(why) => format!("{head}\trefused\trefused\t-\t{seconds:.2}\t{why}"),
         Ok(Outcome { is_biased, right, wrong, wrong_z }) => {
             let sound = if *is_biased { "baseline" } else { word(right.sound) };
             let z = wrong_z.map_or("-".to_owned(), |z| format!("{z:.2}"));
             let reason = if right.sound == Some(false) { &right.reason } else { &wrong.reason };
-            format!("{head}\t{sound}\t{}\t{z}\t{reason}", word(wrong.sound))
+            format!("{head}\t{sound}\t{}\t{z}\t{seconds:.2}\t{reason}", word(wrong.sound))
         }
     }
 }
@@ -50,13 +51,14 @@ fn main() {
         .into_par_iter()
         .with_max_len(1)
         .map(|index| {
+            let clock = ThreadTime::now();
             let run = lawful_run(u64::from(index));
-            line(index, &run, &outcome(&run, FACTOR))
+            let outcome = outcome(&run, FACTOR);
+            let line = line(index, &run, &outcome, clock.elapsed().as_secs_f64());
+            println!("{line}");
+            line
         })
         .collect();
-    for line in &lines {
-        println!("{line}");
-    }
 
     // By kind: runs, refused, true, null, false, rejected at 1.01.
     let mut table: BTreeMap<&str, [u32; 6]> = BTreeMap::new();
@@ -81,17 +83,21 @@ fn main() {
     }
     let Some(earlier) = arguments.get(1) else { return };
     let earlier = std::fs::read_to_string(earlier).expect("the lines of an earlier build");
-    for (old, new) in earlier.lines().zip(&lines) {
-        let (before, now): (Vec<&str>, Vec<&str>) = (old.split('\t').collect(), new.split('\t').collect());
+    let fields = |line: &'_ str| line.split('\t').map(str::to_owned).collect::<Vec<_>>();
+    let earlier: BTreeMap<String, Vec<String>> =
+        earlier.lines().map(fields).map(|fields| (fields[0].clone(), fields)).collect();
+    for new in &lines {
+        let now = fields(new);
+        let Some(before) = earlier.get(&now[0]) else { continue };
         assert_eq!(before[..4], now[..4], "the same runs");
         if before[4] == "true" && now[4] != "true" {
             eprintln!("no longer true: {new}");
         }
         if before[4] == "false" {
-            eprintln!("was false, is {}: {old}", now[4]);
+            eprintln!("was false, is {}: {new}", now[4]);
         }
         if before[4] != "baseline" && before[5] == "false" && now[5] != "false" {
-            eprintln!("no longer rejected at 1.01: {new}\n    before: {}", before[7]);
+            eprintln!("no longer rejected at 1.01: {new}");
         }
     }
 }
