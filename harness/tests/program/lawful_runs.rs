@@ -277,7 +277,7 @@ impl Draw {
                     4.0 * lookups,
                 )
             }
-            9 => self.baseline(teeth, majorant),
+            9 => self.baseline(teeth, majorant, depth),
             10 => (json!({ "kind": "woodcock", "majorant": majorant }), depth),
             11 => {
                 let version = self.one_of(&["terminating", "non_terminating", "adaptive"]);
@@ -355,14 +355,15 @@ impl Draw {
         (spec, 3.0 * f64::from(teeth) * segments as f64)
     }
 
-    fn baseline(&mut self, teeth: u32, majorant: f64) -> (Value, f64) {
-        let spec = match self.below(4) {
-            0 => json!({ "kind": "jackknife", "teeth": teeth }),
-            1 => json!({ "kind": "naive", "teeth": teeth }),
-            2 => json!({ "kind": "progressive_majorant", "start": majorant.max(1e-6) * 0.5 }),
-            _ => json!({ "kind": "ray_marching", "steps": teeth, "jitter": self.happens(0.5) }),
-        };
-        (spec, 2.0 * f64::from(teeth))
+    fn baseline(&mut self, teeth: u32, majorant: f64, depth: f64) -> (Value, f64) {
+        let combs = 2.0 * f64::from(teeth);
+        match self.below(4) {
+            0 => (json!({ "kind": "jackknife", "teeth": teeth }), combs),
+            1 => (json!({ "kind": "naive", "teeth": teeth }), combs),
+            // The guess is raised to what is met, up to the majorant.
+            2 => (json!({ "kind": "progressive_majorant", "start": majorant.max(1e-6) * 0.5 }), depth),
+            _ => (json!({ "kind": "ray_marching", "steps": teeth, "jitter": self.happens(0.5) }), combs),
+        }
     }
 }
 
