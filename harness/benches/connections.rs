@@ -6,10 +6,8 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, EmptySpace, Homogeneous, Line, Medium};
-use fairflight_paths::transport::{Lobe, Vertex, World};
-use fairflight_paths::{
-    Heuristic, Integrator, ParticleTracer, PathTracer, Ratio, RayTransmittance, Uniform, Walk,
-};
+use fairflight_paths::transport::{Lobe, Types, Vertex, World};
+use fairflight_paths::{Heuristic, Integrator, ParticleTracer, PathTracer, Ratio, Uniform, Walk};
 use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{
     Background, Geometry, Lights, Material, NoSurfaces, Shape, Surface, Surfaces, Volume,
@@ -81,11 +79,11 @@ fn points(source: &mut Seeded) -> Vec<Vertex> {
 }
 
 /// Connects every point with every light.
-fn connect<G: Geometry<f64>, T: RayTransmittance<Homogeneous>>(
-    world: World<'_, G, Homogeneous, HenyeyGreenstein, f64>,
+fn connect<W: Types<Spectrum = f64, Sampling = Uniform>>(
+    world: World<'_, W>,
     vpls: &[Vpl<f64>],
     points: &[Vertex],
-    shadow: T,
+    shadow: W::Shadow,
 ) -> f64 {
     let term = Term::Bounded(BOUND);
     let mut gather = Gather { world, vpls, term, heuristic: Heuristic::Balance, walk: walk(), shadow };
@@ -109,7 +107,7 @@ fn ratio(mut ours: impl FnMut() -> f64, mut theirs: impl FnMut() -> f64) -> f64 
 fn connections(criterion: &mut Criterion) {
     let (volume, surfaces) = (haze(homogeneous()), spheres());
     let lights = Lights { background: Background::dark(), sources: Vec::new() };
-    let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+    let world = World::new(&volume, &surfaces, &lights);
     let emitters = Emitters::new(&lights, &surfaces, world.enclosing_ball(), dvec3(0.0, 0.6, -4.5));
     let paths = LightPaths::new(world, &emitters, walk());
     let mut source = Seeded::new(1);
@@ -118,7 +116,7 @@ fn connections(criterion: &mut Criterion) {
         paths.trace(1.0 / f64::from(PATHS), &mut ledger, &mut source, |vpl| vpls.push(vpl));
     }
     let points = points(&mut source);
-    let empty = World { volume: &volume, surfaces: &NoSurfaces, lights: &lights };
+    let empty = World::new(&volume, &NoSurfaces, &lights);
     let count = (vpls.len() * points.len()) as u64;
 
     let mut group = criterion.benchmark_group("connections");
@@ -141,7 +139,7 @@ fn connections(criterion: &mut Criterion) {
 /// Paths from in front of the haze.
 fn paths<G: Geometry<f64>, M: Medium>(volume: &Haze<M>, surfaces: &G) -> f64 {
     let lights = even();
-    let world = World { volume, surfaces, lights: &lights };
+    let world = World::new(volume, surfaces, &lights);
     let mut tracer = PathTracer::new(world, walk(), ratio_tracking(), Heuristic::Balance);
     trace(&mut tracer)
 }

@@ -25,10 +25,11 @@ fn estimates<F: Extinction, E: TransmittanceEstimator<F>>(field: &F, estimator: 
 }
 
 /// The same with field and source behind pointers, as the harness has them.
-fn behind_pointers<'a, E>(field: &'a dyn Extinction, estimator: &E, count: u64) -> f64
-where
-    E: TransmittanceEstimator<Bounded<&'a dyn Extinction>>,
-{
+fn behind_pointers<'a, E: TransmittanceEstimator<Bounded<&'a dyn Extinction>>>(
+    field: &'a dyn Extinction,
+    estimator: &E,
+    count: u64,
+) -> f64 {
     let mut seeded = Seeded::new(1);
     (0..count)
         .map(|_| {

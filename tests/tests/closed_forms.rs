@@ -25,20 +25,19 @@ fn single(version: Version, albedo: f64) -> SingleParticle {
     SingleParticle { version, albedo: Albedo::new(albedo).unwrap() }
 }
 
-fn theory_on<F, E>(field: &F, estimator: &E, also: &[f64]) -> Theory
-where
-    F: OpticalThickness + Breakpoints,
-    E: for<'f> ClosedForm<&'f F>,
-{
+fn theory_on<F: OpticalThickness + Breakpoints, E: for<'f> ClosedForm<&'f F>>(
+    field: &F,
+    estimator: &E,
+    also: &[f64],
+) -> Theory {
     let tau = field.optical_thickness(0.0, field.length());
     estimator.theory(&mut RayQuadrature::new(field, also), tau, Tolerance::TIGHT)
 }
 
-fn on_the_seed_ray<C, R>(control: C, sampling: R) -> Theory
-where
-    C: OpticalThickness + Breakpoints,
-    R: InvertOpticalThickness,
-{
+fn on_the_seed_ray<C: OpticalThickness + Breakpoints, R: InvertOpticalThickness>(
+    control: C,
+    sampling: R,
+) -> Theory {
     let also = control.breakpoints();
     theory_on(&seed_ray(), &Tracking::new(double_particle(), control, sampling), &also)
 }

@@ -42,7 +42,7 @@ impl CollisionModel for AnyModel {
             Self::Single(model) => model.transmitted(r),
         }
     }
-    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
+    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
         match self {
             Self::Double(model) => model.transmit(r, source),
             Self::Single(model) => model.transmit(r, source),

@@ -170,6 +170,46 @@ fn a_long_file_says_why() {
     }
 }
 
+/// Blocks of bounds: the number of the line that ends with `where`, and the lines of the block, that one included.
+fn where_blocks(text: &str) -> Vec<(usize, usize)> {
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let lines: Vec<&str> = text.lines().collect();
+    let starts = |line: &str| {
+        let code = line.trim();
+        !code.starts_with("//") && (code == "where" || code.ends_with(" where"))
+    };
+    let length = |start: usize| {
+        let deeper = |line: &&&str| indent(line) > indent(lines[start]);
+        1 + lines[start + 1..].iter().take_while(deeper).count()
+    };
+    let blocks = lines.iter().enumerate().filter(|(_, line)| starts(line));
+    blocks.map(|(start, _)| (start + 1, length(start))).collect()
+}
+
+#[test]
+fn blocks_of_bounds_are_counted() {
+    let text = "fn a<F>()\nwhere\n    F: X\n        + Y,\n{\n    // a place where\n    b\n}\nimpl<E> A for E where\n    E: B,\n{\n}\n";
+    assert_eq!(where_blocks(text), [(2, 3), (9, 2)]);
+}
+
+/// Bounds that many functions share have a name: a trait that bundles types ([`Types`](fairflight_paths::transport::Types)), or one that
+/// implies them. The total may fall, and not rise.
+#[test]
+fn bounds_are_short() {
+    const MOST_LINES: usize = 4;
+    const TOTAL: usize = 108;
+    let mut total = 0;
+    for folder in ["crates", "harness", "tests"] {
+        for (path, text) in sources(folder) {
+            for (line, lines) in where_blocks(&text) {
+                assert!(lines <= MOST_LINES, "{}:{line}: {lines} lines of bounds", path.display());
+                total += lines;
+            }
+        }
+    }
+    assert!(total <= TOTAL, "{total} lines of bounds, more than {TOTAL}");
+}
+
 #[test]
 fn no_path_of_a_machine() {
     // Spelled in two parts, so that this file has none.

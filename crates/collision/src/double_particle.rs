@@ -31,7 +31,7 @@ impl CollisionModel for DoubleParticle {
     }
 
     #[inline]
-    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, _source: &mut S) -> Option<f64> {
+    fn transmit(&self, r: f64, _source: &mut impl UniformSource) -> Option<f64> {
         Some(1.0 - r)
     }
 }

@@ -24,7 +24,7 @@ pub trait CollisionModel {
     }
 
     /// Draws the weight of the transmitted particle; `None` where no transmitted particle leaves and the walk ends.
-    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64>;
+    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64>;
 }
 
 /// A model that keeps at most one of the two particles, so that a walk does not branch.
@@ -33,7 +33,7 @@ pub trait CollisionModel {
 /// [`scattered`](CollisionModel::scattered) and [`transmitted`](CollisionModel::transmitted) state.
 pub trait SingleOutcome: CollisionModel {
     /// Draws what leaves the collision, from one variate.
-    fn collide<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Outcome;
+    fn collide(&self, r: f64, source: &mut impl UniformSource) -> Outcome;
 }
 
 /// The one particle that leaves a collision, with its energy as a multiple of the incident one.

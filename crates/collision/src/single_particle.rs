@@ -100,7 +100,7 @@ impl CollisionModel for SingleParticle {
     }
 
     #[inline]
-    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
+    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
         let transmitted = self.transmitted(r);
         if source.next_uniform() < transmitted.probability { Some(transmitted.energy) } else { None }
     }
@@ -109,7 +109,7 @@ impl CollisionModel for SingleParticle {
 /// SimulateParticle's decision (szirmay-kalos-2017 section 4.1).
 impl SingleOutcome for SingleParticle {
     #[inline]
-    fn collide<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Outcome {
+    fn collide(&self, r: f64, source: &mut impl UniformSource) -> Outcome {
         let u = source.next_uniform();
         let scatter = self.albedo.get() * r.abs();
         let transmit = (1.0 - r).abs();

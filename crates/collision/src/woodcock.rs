@@ -30,14 +30,14 @@ impl CollisionModel for Woodcock {
     /// Strictly `u < r`: where r = 0 no variate collides, where r = 1 every one does. (raab-2008 algorithm 1 as printed
     /// can collide where there is no matter.)
     #[inline]
-    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Option<f64> {
+    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
         if source.next_uniform() < r { None } else { Some(1.0) }
     }
 }
 
 impl SingleOutcome for Woodcock {
     #[inline]
-    fn collide<S: UniformSource + ?Sized>(&self, r: f64, source: &mut S) -> Outcome {
+    fn collide(&self, r: f64, source: &mut impl UniformSource) -> Outcome {
         let u = source.next_uniform();
         if u < self.albedo.get() * r {
             Outcome::Scattered(1.0)

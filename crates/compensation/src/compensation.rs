@@ -2,10 +2,8 @@
 
 use crate::place::{Placed, Region};
 use crate::{CompensationOptions, LocalMean, Strategy};
-use fairflight_media::{Medium, PhaseFunction};
-use fairflight_paths::transport::Vertex;
-use fairflight_paths::{RayTransmittance, SamplingExtinction};
-use fairflight_scene::{Geometry, Spectrum};
+use fairflight_paths::transport::{Types, Vertex};
+use fairflight_scene::Spectrum;
 use fairflight_sources::UniformSource;
 use fairflight_vpl::{Connected, Correction, Gather, Pairing, Term};
 
@@ -66,38 +64,29 @@ impl<'m> Compensation<'m> {
 
     /// One compensation vertex of `y` connected with `which`, and those behind it.
     #[inline(never)]
-    fn step<G, M, P, C, R, T, S>(
+    fn step<W: Types>(
         &mut self,
-        gather: &mut Gather<'_, G, M, P, C, R, T>,
+        gather: &mut Gather<'_, W>,
         region: &Region,
         (which, depth): (Connected, u32),
-        source: &mut S,
-    ) -> C
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        R: SamplingExtinction,
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
         self.tried += 1;
         let Some(Placed { vertex, factor, geometric }) =
             region.place(&self.options, self.mean, gather, source)
         else {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         };
         // Below the bound, or with an infinite G at a distance that underflows: (G − b)/G without G.
         let lost = 1.0 - region.bound / geometric;
         if lost.is_nan() || lost <= 0.0 {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
         self.inside += 1;
         let weight = factor * lost;
         let mut scattered = match (self.options.strategy, which) {
             // Emitters have a vertex of their own.
-            (Strategy::ManyToOne, Connected::One(_)) => C::ZERO,
+            (Strategy::ManyToOne, Connected::One(_)) => W::Spectrum::ZERO,
             _ => gather.emitters(&vertex, source) * gather.share(which),
         };
         scattered += gather.connected(&vertex, which, source);
@@ -106,32 +95,23 @@ impl<'m> Compensation<'m> {
     }
 
     /// The compensation at a compensation vertex.
-    fn further<G, M, P, C, R, T, S>(
+    fn further<W: Types>(
         &mut self,
-        gather: &mut Gather<'_, G, M, P, C, R, T>,
+        gather: &mut Gather<'_, W>,
         x: &Vertex,
         (which, depth): (Connected, u32),
         weight: f64,
-        source: &mut S,
-    ) -> C
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        R: SamplingExtinction,
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
         let survival = match self.options.steps {
-            Some(steps) if depth >= steps => return C::ZERO,
+            Some(steps) if depth >= steps => return W::Spectrum::ZERO,
             Some(_) => 1.0,
             None => weight.min(1.0),
         };
         if survival < 1.0 && source.next_uniform() >= survival {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
-        let Term::Bounded(bound) = gather.term else { return C::ZERO };
+        let Term::Bounded(bound) = gather.term else { return W::Spectrum::ZERO };
         let region = Region::new(*x, bound, &self.options, gather);
         self.step(gather, &region, (which, depth), source) * (1.0 / survival)
     }
@@ -148,25 +128,17 @@ impl Strategy {
     }
 }
 
-impl<C: Spectrum> Correction<C> for Compensation<'_> {
-    fn recover<G, M, P, R, T, S>(
+impl<W: Types> Correction<W> for Compensation<'_> {
+    fn recover(
         &mut self,
-        gather: &mut Gather<'_, G, M, P, C, R, T>,
+        gather: &mut Gather<'_, W>,
         y: &Vertex,
         which: Connected,
-        source: &mut S,
-    ) -> C
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        R: SamplingExtinction,
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
-        let Term::Bounded(bound) = gather.term else { return C::ZERO };
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
+        let Term::Bounded(bound) = gather.term else { return W::Spectrum::ZERO };
         if bound == f64::INFINITY || self.options.steps == Some(0) {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
         let region = Region::new(*y, bound, &self.options, gather);
         let lights = gather.vpls.len();

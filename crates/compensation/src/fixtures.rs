@@ -3,8 +3,8 @@
 use crate::LocalMean;
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Bounds, EmptySpace, Homogeneous, Medium};
-use fairflight_paths::transport::{Lobe, Vertex, World};
+use fairflight_media::{Bounds, EmptySpace, Homogeneous, LineThickness};
+use fairflight_paths::transport::{Lobe, MadeOf, Vertex, World};
 use fairflight_paths::{Heuristic, Uniform, Walk};
 use fairflight_scene::surface::Rectangle;
 use fairflight_scene::{Background, Lights, Material, Shape, Source, Surface, Surfaces, Volume};
@@ -18,7 +18,8 @@ pub(crate) struct Scene<M> {
     pub(crate) lights: Lights<f64>,
 }
 
-pub(crate) type SceneGather<'s, M> = Gather<'s, Surfaces<f64>, M, HenyeyGreenstein, f64, Uniform, Regular>;
+pub(crate) type SceneGather<'s, M> =
+    Gather<'s, MadeOf<f64, M, HenyeyGreenstein, Surfaces<f64>, Uniform, Regular>>;
 
 /// Of the haze.
 pub(crate) const SIGMA_T: f64 = 0.5;
@@ -26,9 +27,9 @@ pub(crate) const ALBEDO: f64 = 0.75;
 /// Of each surface.
 pub(crate) const REFLECTANCE: f64 = 0.5;
 
-impl<M: Medium> Scene<M> {
+impl<M: LineThickness> Scene<M> {
     pub(crate) fn gather<'s>(&'s self, vpls: &'s [Vpl<f64>], bound: f64) -> SceneGather<'s, M> {
-        let world = World { volume: &self.volume, surfaces: &self.surfaces, lights: &self.lights };
+        let world = World::new(&self.volume, &self.surfaces, &self.lights);
         let walk = Walk::new(Version::Terminating, Uniform::new(SIGMA_T).unwrap());
         let (term, heuristic) = (Term::Bounded(bound), Heuristic::Balance);
         Gather { world, vpls, term, heuristic, walk, shadow: Regular }

@@ -25,7 +25,7 @@
 //! let lights = Lights { background: Background::dark(), sources: vec![] };
 //! let bounds = Bounds::sphere(DVec3::ZERO, 1.0).unwrap();
 //! let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: Isotropic };
-//! let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+//! let world = World::new(&volume, &surfaces, &lights);
 //! let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).unwrap());
 //!
 //! let emitters = Emitters::new(&lights, &surfaces, world.enclosing_ball(), DVec3::ZERO);

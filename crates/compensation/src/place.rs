@@ -1,10 +1,9 @@
 //! Where a compensation vertex lies.
 
 use crate::{CompensationOptions, LocalMean, Placement, TransmittanceUse, TruncatedExponential, Visibility};
-use fairflight_media::{Extinction, Medium, PhaseFunction};
-use fairflight_paths::transport::{Event, Lobe, Vertex};
-use fairflight_paths::{RayTransmittance, SamplingExtinction};
-use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
+use fairflight_media::Extinction;
+use fairflight_paths::transport::{Event, Lobe, Types, Vertex};
+use fairflight_scene::{Geometry, Hit, Segment};
 use fairflight_sources::UniformSource;
 use fairflight_vpl::Gather;
 
@@ -33,16 +32,12 @@ pub(crate) struct Placed<C> {
 }
 
 impl Region {
-    pub(crate) fn new<G, M, P, C, R, T>(
+    pub(crate) fn new<W: Types>(
         center: Vertex,
         bound: f64,
         options: &CompensationOptions,
-        gather: &Gather<'_, G, M, P, C, R, T>,
-    ) -> Self
-    where
-        G: Geometry<C>,
-        C: Spectrum,
-    {
+        gather: &Gather<'_, W>,
+    ) -> Self {
         let radius = 1.0 / bound.sqrt();
         let near = match options.visibility {
             Visibility::Full => u64::MAX,
@@ -55,22 +50,13 @@ impl Region {
     }
 
     /// Draws a vertex; `None` where the ray leaves the region or meets something smooth, with which nothing is ever connected.
-    pub(crate) fn place<G, M, P, C, R, T, S>(
+    pub(crate) fn place<W: Types>(
         &self,
         options: &CompensationOptions,
         mean: &LocalMean,
-        gather: &mut Gather<'_, G, M, P, C, R, T>,
-        source: &mut S,
-    ) -> Option<Placed<C>>
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        R: SamplingExtinction,
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+        gather: &mut Gather<'_, W>,
+        source: &mut impl UniformSource,
+    ) -> Option<Placed<W::Spectrum>> {
         let y = &self.center;
         let phase = &gather.world.volume.phase;
         let direction = y.sample(phase, source.next_uniform(), source.next_uniform());
@@ -92,20 +78,12 @@ impl Region {
 }
 
 /// By a free flight, cut off where the region ends: what lies beyond counts for nothing.
-fn by_flight<G, M, P, C, R, T, S>(
+fn by_flight<W: Types>(
     segment: &Segment,
-    hit: Option<&Hit<'_, C>>,
-    gather: &Gather<'_, G, M, P, C, R, T>,
-    source: &mut S,
-) -> Option<(Vertex, C)>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    S: UniformSource + ?Sized,
-{
+    hit: Option<&Hit<'_, W::Spectrum>>,
+    gather: &Gather<'_, W>,
+    source: &mut impl UniformSource,
+) -> Option<(Vertex, W::Spectrum)> {
     let world = &gather.world;
     match world.follow(&gather.walk, &world.collisions(&gather.walk), segment, source) {
         Event::Scattered { vertex, energy } => Some((vertex, energy)),
@@ -122,22 +100,13 @@ where
 /// With a surface at s < d the distance is drawn within d all the same, and one beyond the medium in front of the surface means the
 /// surface: with probability (e^{−σs} − e^{−σd})/(1 − e^{−σd}), not exp(−σs) as under a free flight. The paper's appendix never
 /// limits d to the surface.
-fn within_region<G, M, P, C, R, T, S>(
+fn within_region<W: Types>(
     segment: &Segment,
     (radius, transmittance, mean): (f64, TransmittanceUse, &LocalMean),
-    hit: Option<&Hit<'_, C>>,
-    gather: &mut Gather<'_, G, M, P, C, R, T>,
-    source: &mut S,
-) -> Option<(Vertex, C)>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-    S: UniformSource + ?Sized,
-{
+    hit: Option<&Hit<'_, W::Spectrum>>,
+    gather: &mut Gather<'_, W>,
+    source: &mut impl UniformSource,
+) -> Option<(Vertex, W::Spectrum)> {
     let world = gather.world;
     let surface = hit.and_then(|hit| world.diffuse_vertex(hit));
     let length = segment.length.is_finite().then_some(segment.length);
@@ -153,7 +122,7 @@ where
     };
     let law = TruncatedExponential::new(rate, reach);
     let distance = law.sample(source.next_uniform());
-    let mut between = |distance: f64, source: &mut S| match transmittance {
+    let mut between = |distance: f64| match transmittance {
         TransmittanceUse::Exact => {
             let way = Segment { length: distance, ..*segment };
             world.transmittance(&way, &mut gather.shadow, source)
@@ -168,13 +137,13 @@ where
         if sigma_t == 0.0 {
             return None;
         }
-        let weight = between(distance, source) * sigma_t / law.pdf_distance(distance);
+        let weight = between(distance) * sigma_t / law.pdf_distance(distance);
         let lobe = Lobe::Phase { incident: segment.line.direction };
         let vertex = Vertex { position: segment.line.at(distance), lobe };
         Some((vertex, world.volume.albedo * weight))
     } else {
         let (vertex, reflectance) = surface?;
-        let weight = between(segment.length, source) / law.probability_beyond(end);
+        let weight = between(segment.length) / law.probability_beyond(end);
         Some((vertex, reflectance * weight))
     }
 }

@@ -78,7 +78,7 @@ const REPLICAS: u64 = 64;
 const RAYS: u32 = 10;
 
 fn by_paths(room: &Room, seed: u64) -> f64 {
-    let world = World { volume: &room.0, surfaces: &room.1, lights: &room.2 };
+    let world = World::new(&room.0, &room.1, &room.2);
     let walk = Walk::new(Version::NonTerminating, Uniform::new(3.0).unwrap());
     let mut tracer = PathTracer::new(world, walk, Regular, Heuristic::Balance);
     let mut source = Seeded::new(seed);
@@ -86,7 +86,7 @@ fn by_paths(room: &Room, seed: u64) -> f64 {
 }
 
 fn by_lights(room: &Room, bound: f64, options: Option<CompensationOptions>, seed: u64) -> f64 {
-    let world = World { volume: &room.0, surfaces: &room.1, lights: &room.2 };
+    let world = World::new(&room.0, &room.1, &room.2);
     let walk = Walk::new(Version::NonTerminating, Uniform::new(3.0).unwrap());
     let emitters = Emitters::new(&room.2, &room.1, world.enclosing_ball(), eye().origin);
     let paths = LightPaths::new(world, &emitters, walk);

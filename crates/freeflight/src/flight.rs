@@ -68,7 +68,7 @@ impl Flight {
 /// optical thickness in closed form, cells, …
 pub trait FreeFlight<F: Extinction> {
     /// Draws one flight from the start of the profile. Variates come from `source` alone; nothing is allocated.
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight;
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight;
 
     /// Whether the sampler is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
     /// does not admit gets biased flights, not an error: watch the look-ups.
@@ -77,7 +77,7 @@ pub trait FreeFlight<F: Extinction> {
 
 impl<F: Extinction, E: FreeFlight<F>> FreeFlight<F> for &E {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         (**self).sample(field, source)
     }
     #[inline]

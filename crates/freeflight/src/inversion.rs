@@ -19,7 +19,7 @@ pub struct Inversion;
 
 impl<F: InvertOpticalThickness> FreeFlight<F> for Inversion {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         Flight::unweighted(field.invert(0.0, source.next_exponential()))
     }
 

@@ -77,7 +77,7 @@ impl JitteredFlight {
 
 /// Whether a Woodcock flight from `from` reaches `to`.
 #[inline]
-fn survives<F: Majorant, S: UniformSource + ?Sized>(field: &F, from: f64, to: f64, source: &mut S) -> bool {
+fn survives<F: Majorant>(field: &F, from: f64, to: f64, source: &mut impl UniformSource) -> bool {
     let majorant = field.majorant();
     let mut s = from;
     loop {
@@ -93,7 +93,7 @@ fn survives<F: Majorant, S: UniformSource + ?Sized>(field: &F, from: f64, to: f6
 
 impl<F: Majorant> FreeFlight<F> for JitteredFlight {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let (count, width) = self.strata(field);
         for i in 0..count as u64 {
             let from = i as f64 * width;

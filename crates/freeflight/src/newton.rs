@@ -35,7 +35,7 @@ impl Newton {
 
 impl<F: OpticalThickness> FreeFlight<F> for Newton {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let depth = source.next_exponential();
         let total = field.optical_thickness(0.0, field.length());
         let inside = depth < total;

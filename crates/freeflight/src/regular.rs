@@ -94,7 +94,7 @@ fn cells<F: Cells>(field: &F) -> impl Iterator<Item = (f64, f64)> {
 
 impl<F: Cells> FreeFlight<F> for Regular {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let mut depth = source.next_exponential();
         for (from, to) in cells(field) {
             let cell = Cell::look_up(field, from, to);

@@ -97,7 +97,7 @@ impl<R: InvertOpticalThickness> Tracking<R> {
 
 impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Tracking<R> {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         let mut weight = 1.0;
         let mut s = 0.0;

@@ -41,7 +41,7 @@ impl<R: InvertOpticalThickness> Woodcock<R> {
 
 impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Woodcock<R> {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         debug_assert_eq!(field.length(), self.majorant.length(), "prepared for another profile");
         let mut s = 0.0;
         while let Some(next) = self.majorant.invert(s, source.next_exponential()) {

@@ -190,16 +190,12 @@ pub type ObservedFlight<G, E> = Counted<Watched<G, AdmittedFlight<G, E>>>;
 ///
 /// # Errors
 /// If a look-up or a flight is not lawful: a law says nothing then.
-pub fn check<G, E>(
+pub fn check<G: Extinction + Copy, E: FreeFlight<G> + FreeFlight<ObservedFlight<G, E>> + Copy>(
     field: G,
     sampler: E,
     expected: &FlightExpectation,
     run: Run,
-) -> Result<FlightEvidence, FlightRefusal>
-where
-    G: Extinction + Copy,
-    E: FreeFlight<G> + FreeFlight<ObservedFlight<G, E>> + Copy,
-{
+) -> Result<FlightEvidence, FlightRefusal> {
     let observed = Counted::new(Watched::new(field, AdmittedFlight { field, sampler }));
     let lookups = || observed.lookups();
     let measured = measure(|source| sampler.sample(&observed, source), expected, run, lookups)?;
@@ -213,16 +209,12 @@ where
 ///
 /// # Errors
 /// If a flight is not lawful.
-pub fn check_flights<G, E>(
+pub fn check_flights<G: Extinction, E: FreeFlight<G>>(
     field: G,
     sampler: E,
     expected: &FlightExpectation,
     run: Run,
-) -> Result<FlightEvidence, FlightRefusal>
-where
-    G: Extinction,
-    E: FreeFlight<G>,
-{
+) -> Result<FlightEvidence, FlightRefusal> {
     let uncounted = expected.uncounted();
     Ok(measure(|source| sampler.sample(&field, source), &uncounted, run, || 0)?.judged(&uncounted, run))
 }
@@ -343,7 +335,7 @@ mod tests {
         #[derive(Clone, Copy)]
         struct Looks;
         impl<F: Extinction> FreeFlight<F> for Looks {
-            fn sample<S: UniformSource + ?Sized>(&self, field: &F, _source: &mut S) -> Flight {
+            fn sample(&self, field: &F, _source: &mut impl UniformSource) -> Flight {
                 Flight::Escaped { weight: field.sigma_t(0.5) }
             }
             fn admits(&self, _field: &F, _s: f64, sigma_t: f64) -> bool {

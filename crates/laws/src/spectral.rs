@@ -24,10 +24,8 @@ impl<'a, F, E> ObservedSpectrum<'a, F, E> {
     }
 }
 
-impl<F, E, const N: usize> SpectralExtinction<N> for ObservedSpectrum<'_, F, E>
-where
-    F: SpectralExtinction<N>,
-    E: SpectralFreeFlight<F, N>,
+impl<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usize> SpectralExtinction<N>
+    for ObservedSpectrum<'_, F, E>
 {
     fn sigma_t(&self, s: f64) -> [f64; N] {
         self.lookups.set(self.lookups.get() + 1);
@@ -46,10 +44,8 @@ where
 }
 
 /// A closed form is no look-up.
-impl<F, E, const N: usize> SpectralOpticalThickness<N> for ObservedSpectrum<'_, F, E>
-where
-    F: SpectralOpticalThickness<N>,
-    E: SpectralFreeFlight<F, N>,
+impl<F: SpectralOpticalThickness<N>, E: SpectralFreeFlight<F, N>, const N: usize> SpectralOpticalThickness<N>
+    for ObservedSpectrum<'_, F, E>
 {
     fn optical_thickness(&self, from: f64, to: f64) -> [f64; N] {
         self.field.optical_thickness(from, to)
@@ -60,7 +56,7 @@ where
 ///
 /// # Errors
 /// If a look-up or a flight is not lawful: a law says nothing then.
-pub fn check<F, E, const N: usize>(
+pub fn check<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usize>(
     field: &F,
     sampler: &E,
     wavelength: usize,
@@ -68,8 +64,6 @@ pub fn check<F, E, const N: usize>(
     run: Run,
 ) -> Result<FlightEvidence, FlightRefusal>
 where
-    F: SpectralExtinction<N>,
-    E: SpectralFreeFlight<F, N>,
     for<'a> E: SpectralFreeFlight<ObservedSpectrum<'a, F, E>, N>,
 {
     let observed = ObservedSpectrum::new(field, sampler);
@@ -85,17 +79,13 @@ where
 ///
 /// # Errors
 /// If a flight is not lawful.
-pub fn check_flights<F, E, const N: usize>(
+pub fn check_flights<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usize>(
     field: &F,
     sampler: &E,
     wavelength: usize,
     expected: &FlightExpectation,
     run: Run,
-) -> Result<FlightEvidence, FlightRefusal>
-where
-    F: SpectralExtinction<N>,
-    E: SpectralFreeFlight<F, N>,
-{
+) -> Result<FlightEvidence, FlightRefusal> {
     let uncounted = expected.uncounted();
     let sample = |source: &mut _| sampler.sample(field, source).of(wavelength);
     Ok(measure(sample, &uncounted, run, || 0)?.judged(&uncounted, run))

@@ -166,16 +166,12 @@ where
 ///
 /// # Errors
 /// If an estimate is no number.
-pub fn check_estimates<G, E>(
+pub fn check_estimates<G: Extinction, E: TransmittanceEstimator<G>>(
     field: G,
     estimator: E,
     expected: &Expectation,
     run: Run,
-) -> Result<Verdict, NotFinite>
-where
-    G: Extinction,
-    E: TransmittanceEstimator<G>,
-{
+) -> Result<Verdict, NotFinite> {
     let scale = expected.unit().scale();
     let measured =
         crate::measure(run.seed, run.samples, |source| scale * estimator.estimate(&field, source))?;

@@ -56,12 +56,10 @@ const MEASURED: u32 = 30;
 
 /// Whether the bounds of the medium alone tell that the squared energy of a walk grows nowhere: 0 ≤ r ≤ 2/(1 + a) at every collision, so
 /// that q_sum = a r + |1 − r| ≤ 1, and no gain. Where they do not tell, it is for [`second_moment_growth`] to measure.
-pub fn grows_nowhere<M, P, C, R>(volume: &Volume<M, P, C>, walk: &Walk<R>) -> bool
-where
-    M: Medium,
-    C: Spectrum,
-    R: SamplingExtinction,
-{
+pub fn grows_nowhere<M: Medium, P, C: Spectrum>(
+    volume: &Volume<M, P, C>,
+    walk: &Walk<impl SamplingExtinction>,
+) -> bool {
     let albedo = volume.albedo.max_channel();
     let most = 2.0 / (1.0 + albedo) * walk.sampling().lowest();
     albedo <= 1.0
@@ -75,18 +73,11 @@ where
 ///
 /// The particles start uniformly in the ball around the bounds, isotropically. What is estimated is a property of the medium, not
 /// of a camera: the slowest mode to die out. `None` where no collision ever happened: an empty medium.
-pub fn second_moment_growth<M, P, C, R, S>(
+pub fn second_moment_growth<M: Medium, P: PhaseFunction, C: Spectrum>(
     volume: &Volume<M, P, C>,
-    walk: &Walk<R>,
-    source: &mut S,
-) -> Option<Growth>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    S: UniformSource + ?Sized,
-{
+    walk: &Walk<impl SamplingExtinction>,
+    source: &mut impl UniformSource,
+) -> Option<Growth> {
     let factors: Vec<f64> = (0..POPULATIONS).filter_map(|_| population(volume, walk, source)).collect();
     if factors.len() < 2 {
         return None;
@@ -98,14 +89,11 @@ where
 }
 
 /// The mean count per generation of one population; `None` once nobody is left.
-fn population<M, P, C, R, S>(volume: &Volume<M, P, C>, walk: &Walk<R>, source: &mut S) -> Option<f64>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    S: UniformSource + ?Sized,
-{
+fn population<M: Medium, P: PhaseFunction, C: Spectrum>(
+    volume: &Volume<M, P, C>,
+    walk: &Walk<impl SamplingExtinction>,
+    source: &mut impl UniformSource,
+) -> Option<f64> {
     let (model, ratio) = walk.collisions(volume);
     // The greatest channel's energy is multiplied by this at each scattering: above 1 for a gain, which the probabilities leave out.
     let gain = ratio.max_channel();
@@ -146,12 +134,7 @@ where
 }
 
 /// As many particles as before, each in proportion to what it counts: systematic resampling with one variate.
-fn resample<S: UniformSource + ?Sized>(
-    from: &[(Line, f64)],
-    count: f64,
-    particles: &mut [Line],
-    source: &mut S,
-) {
+fn resample(from: &[(Line, f64)], count: f64, particles: &mut [Line], source: &mut impl UniformSource) {
     let shift = source.next_uniform();
     let mut entries = from.iter();
     let mut chosen = entries.next();
@@ -171,7 +154,7 @@ fn resample<S: UniformSource + ?Sized>(
 }
 
 /// A point inside the bounds and a direction, both uniform.
-fn start<M, P, C, S: UniformSource + ?Sized>(volume: &Volume<M, P, C>, source: &mut S) -> Line {
+fn start<M, P, C>(volume: &Volume<M, P, C>, source: &mut impl UniformSource) -> Line {
     let (center, radius) = volume.bounds.enclosing_ball();
     // Rejection: the bounds fill a share of their ball; flat ones are met by their middle.
     const TRIES: u32 = 10_000;

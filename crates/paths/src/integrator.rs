@@ -12,5 +12,5 @@ use fairflight_sources::UniformSource;
 /// rays before, except where the integrator says so (a control fitted to neighbouring rays, which changes no expectation).
 pub trait Integrator<C> {
     /// Draws one estimate \[radiance\] for a ray whose direction has unit length.
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C;
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C;
 }

@@ -34,15 +34,11 @@ impl<'s, M, P, C, R> ParticleTracer<'s, M, P, C, R> {
     }
 }
 
-impl<M, P, C, R> Integrator<C> for ParticleTracer<'_, M, P, C, R>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
+impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> Integrator<C>
+    for ParticleTracer<'_, M, P, C, R>
 {
     #[inline]
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
         let Self { volume, lights, walk, truncated } = self;
         let Some(ray) = volume.enter(line, None) else {
             return lights.background.radiance(line.direction);
@@ -83,7 +79,7 @@ impl<'s, M, P, C, T> Attenuation<'s, M, P, C, T> {
 
 impl<M: Medium, P, C: Spectrum, T: RayTransmittance<M>> Integrator<C> for Attenuation<'_, M, P, C, T> {
     #[inline]
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
         let background = self.lights.background.radiance(line.direction);
         match self.volume.enter(line, None) {
             Some(ray) => background * self.estimator.estimate(&ray, source),

@@ -1,9 +1,9 @@
 //! Path tracing from the camera through surfaces and medium (raab-2008 section 4.1).
 
-use crate::transport::World;
-use crate::{Heuristic, Integrator, RayTransmittance, SamplingExtinction, Walk};
-use fairflight_media::{Line, Medium, PhaseFunction};
-use fairflight_scene::{Geometry, Segment, Spectrum};
+use crate::transport::{Types, World};
+use crate::{Heuristic, Integrator, Walk};
+use fairflight_media::Line;
+use fairflight_scene::Segment;
 use fairflight_sources::UniformSource;
 
 /// Volumetric path tracing with next-event estimation: the reference for everything that knows surfaces.
@@ -46,7 +46,7 @@ use fairflight_sources::UniformSource;
 /// let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: Isotropic };
 /// let (surfaces, lights) = (Surfaces::new(vec![floor]), Lights { background: Background::dark(), sources: vec![light] });
 ///
-/// let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+/// let world = World::new(&volume, &surfaces, &lights);
 /// let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).unwrap());
 /// let mut tracer = PathTracer::new(world, walk, Regular, Heuristic::Balance);
 /// let radiance = tracer.radiance(&Line { origin: DVec3::Z, direction: -DVec3::Z }, &mut Seeded::new(1));
@@ -54,18 +54,23 @@ use fairflight_sources::UniformSource;
 /// assert!((radiance - 0.25).abs() < 1e-15);
 /// ```
 #[derive(Debug)]
-pub struct PathTracer<'s, G, M, P, C, R, T> {
-    world: World<'s, G, M, P, C>,
-    walk: Walk<R>,
-    shadow: T,
+pub struct PathTracer<'s, W: Types> {
+    world: World<'s, W>,
+    walk: Walk<W::Sampling>,
+    shadow: W::Shadow,
     heuristic: Heuristic,
     max_vertices: u32,
     truncated: u64,
 }
 
-impl<'s, G, M, P, C, R, T> PathTracer<'s, G, M, P, C, R, T> {
+impl<'s, W: Types> PathTracer<'s, W> {
     /// Paths through `world` that fly by `walk`, connected with lights through `shadow`.
-    pub fn new(world: World<'s, G, M, P, C>, walk: Walk<R>, shadow: T, heuristic: Heuristic) -> Self {
+    pub fn new(
+        world: World<'s, W>,
+        walk: Walk<W::Sampling>,
+        shadow: W::Shadow,
+        heuristic: Heuristic,
+    ) -> Self {
         Self { world, walk, shadow, heuristic, max_vertices: u32::MAX, truncated: 0 }
     }
 
@@ -81,16 +86,8 @@ impl<'s, G, M, P, C, R, T> PathTracer<'s, G, M, P, C, R, T> {
     }
 }
 
-impl<G, M, P, C, R, T> Integrator<C> for PathTracer<'_, G, M, P, C, R, T>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-{
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+impl<W: Types> Integrator<W::Spectrum> for PathTracer<'_, W> {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> W::Spectrum {
         let Self { world, walk, shadow, heuristic, max_vertices, truncated } = self;
         let segment = Segment { line: *line, length: f64::INFINITY, from: None, to: None };
         let traced = world.trace(walk, (*heuristic, *max_vertices), segment, shadow, source);

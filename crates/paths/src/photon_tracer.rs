@@ -26,13 +26,7 @@ pub struct PhotonTracer<'s, M, P, C, R> {
     truncated: u64,
 }
 
-impl<'s, M, P, C, R> PhotonTracer<'s, M, P, C, R>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-{
+impl<'s, M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> PhotonTracer<'s, M, P, C, R> {
     /// Traces photons of `lights` through `volume` towards `camera`.
     pub fn new(
         camera: &'s Camera,
@@ -49,7 +43,7 @@ where
     }
 
     /// Emits one photon and follows it. `splat` sees each contribution with its pixel (column, row).
-    pub fn trace<S: UniformSource + ?Sized>(&mut self, source: &mut S, mut splat: impl FnMut([u32; 2], C)) {
+    pub fn trace(&mut self, source: &mut impl UniformSource, mut splat: impl FnMut([u32; 2], C)) {
         let Self { camera, volume, lights, walk, truncated } = self;
         let emitters = lights.emitters();
         if emitters == 0 {
@@ -62,7 +56,7 @@ where
         let Some(ray) = volume.enter(&line, None) else { return };
         let power = photon.power * emitters as f64;
         let shadow = walk.sampling();
-        let end = walk.simulate(volume, ray, source, |event: ScatteringEvent<C>, source: &mut S| {
+        let end = walk.simulate(volume, ray, source, |event: ScatteringEvent<C>, source| {
             let Some(seen) = camera.project(event.point) else { return };
             let connection =
                 Connection { towards: seen.towards_camera, distance: Some(seen.distance), irradiance: power };

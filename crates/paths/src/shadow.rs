@@ -12,7 +12,7 @@ use glam::DVec3;
 /// **Law.** E\[estimate\] = exp(−∫ σ_t) over the profile, for an estimator that is not labelled biased.
 pub trait RayTransmittance<M> {
     /// Draws one estimate \[1\].
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64;
+    fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64;
 }
 
 /// Ratio tracking at any sampling extinction in space: the double particle model without control
@@ -22,7 +22,7 @@ pub struct Ratio<R>(pub R);
 
 impl<M: Medium, R: SamplingExtinction> RayTransmittance<M> for Ratio<R> {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
+    fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64 {
         let (line, length) = (ray.world_line(), ray.length());
         let (mut weight, mut s) = (SignedProduct::ONE, 0.0);
         while let Some((next, sigma_samp)) = self.0.fly(line, s, length, source.next_exponential()) {
@@ -35,7 +35,7 @@ impl<M: Medium, R: SamplingExtinction> RayTransmittance<M> for Ratio<R> {
 
 impl<M: LineThickness> RayTransmittance<M> for Regular {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, _source: &mut S) -> f64 {
+    fn estimate(&mut self, ray: &Ray<&M>, _source: &mut impl UniformSource) -> f64 {
         (-ray.optical_thickness(0.0, ray.length())).exp()
     }
 }
@@ -43,26 +43,20 @@ impl<M: LineThickness> RayTransmittance<M> for Regular {
 /// Biased, and labelled so.
 impl<M: Medium> RayTransmittance<M> for RayMarching {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
+    fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64 {
         TransmittanceEstimator::estimate(self, ray, source)
     }
 }
 
 /// The irradiance that arrives at a `point` in the volume from a light, the medium between taken into account.
 #[inline]
-pub fn arriving<M, P, C, T, S>(
+pub fn arriving<M: Medium, P, C: Spectrum>(
     volume: &Volume<M, P, C>,
     point: DVec3,
     connection: &Connection<C>,
-    shadow: &mut T,
-    source: &mut S,
-) -> C
-where
-    M: Medium,
-    C: Spectrum,
-    T: RayTransmittance<M>,
-    S: UniformSource + ?Sized,
-{
+    shadow: &mut impl RayTransmittance<M>,
+    source: &mut impl UniformSource,
+) -> C {
     let ray = volume.towards(point, connection);
     connection.irradiance * shadow.estimate(&ray, source)
 }

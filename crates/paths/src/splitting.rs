@@ -41,20 +41,9 @@ impl<'s, M, P, C, R> LineSplitting<'s, M, P, C, R> {
     }
 }
 
-impl<M, P, C, R> LineSplitting<'_, M, P, C, R>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-{
+impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> LineSplitting<'_, M, P, C, R> {
     /// ∫ ρ L over the sphere at a point: the radiance that is scattered there towards −`incident`, per σ_s.
-    fn in_scattered<S: UniformSource + ?Sized>(
-        &mut self,
-        point: DVec3,
-        incident: DVec3,
-        source: &mut S,
-    ) -> C {
+    fn in_scattered<S: UniformSource>(&mut self, point: DVec3, incident: DVec3, source: &mut S) -> C {
         let Self { volume, lights, walk, truncated, .. } = self;
         let mut radiance = C::ZERO;
         let mut connect = |event: ScatteringEvent<C>, source: &mut S| {
@@ -79,14 +68,10 @@ where
     }
 }
 
-impl<M, P, C, R> Integrator<C> for LineSplitting<'_, M, P, C, R>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
+impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> Integrator<C>
+    for LineSplitting<'_, M, P, C, R>
 {
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
         let background = self.lights.background.radiance(line.direction);
         let Some(ray) = self.volume.enter(line, None) else { return background };
         let bounded = Bounded::new(&ray, self.majorant).expect("a majorant is checked to be a number");

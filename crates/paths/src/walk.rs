@@ -126,13 +126,13 @@ impl<R: SamplingExtinction> Walk<R> {
     /// `weight` is the energy that the particle starts with, `left` the number of collisions that it may still meet. `model` is that
     /// of [`collisions`](Self::collisions).
     #[inline]
-    pub(crate) fn fly<M: Medium, S: UniformSource + ?Sized>(
+    pub(crate) fn fly<M: Medium>(
         &self,
         model: &SingleParticle,
         ray: &Ray<&M>,
         mut weight: f64,
         left: &mut u64,
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> Leg {
         let length = ray.length();
         let mut s = 0.0;
@@ -166,19 +166,13 @@ impl<R: SamplingExtinction> Walk<R> {
 
     /// Follows a particle of energy 1 from the start of `ray`. `scattered` sees each scattering event.
     #[inline]
-    pub fn simulate<'v, M, P, C, S>(
+    pub fn simulate<'v, M: Medium, P: PhaseFunction, C: Spectrum, S: UniformSource>(
         &self,
         volume: &'v Volume<M, P, C>,
         mut ray: Ray<&'v M>,
         source: &mut S,
         mut scattered: impl FnMut(ScatteringEvent<C>, &mut S),
-    ) -> End<C>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        S: UniformSource + ?Sized,
-    {
+    ) -> End<C> {
         let (model, ratio) = self.collisions(volume);
         let (mut weight, mut colour) = (1.0_f64, C::splat(1.0));
         let mut left = self.max_collisions;

@@ -49,7 +49,7 @@ pub struct Unidirectional;
 
 impl<F: Majorant> TransmittanceEstimator<F> for Unidirectional {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         if majorant <= 0.0 {
             return 1.0; // nothing is admitted but a vacuum
@@ -172,7 +172,7 @@ fn score(weight: SignedProduct, gaps: f64, depth: f64) -> f64 {
 
 impl<F: Majorant> TransmittanceEstimator<F> for Bidirectional {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         if majorant <= 0.0 {
             return 1.0; // nothing is admitted but a vacuum

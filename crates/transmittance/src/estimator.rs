@@ -12,7 +12,7 @@ use fairflight_sources::UniformSource;
 /// An unbiased estimator never asks for the optical thickness of the field itself.
 pub trait TransmittanceEstimator<F: Extinction> {
     /// Draws one estimate \[1\]. Variates come from `source` alone; nothing is allocated.
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64;
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64;
 
     /// Whether the estimator is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
     /// does not admit gets a biased estimate, not an error: watch the look-ups.
@@ -46,7 +46,7 @@ impl Interaction {
 /// control's transmittance up to s.
 pub trait TransmittanceFunction<F: Extinction>: TransmittanceEstimator<F> {
     /// Draws one walk: its interaction points in increasing order. Appends to `walk`.
-    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<Interaction>);
+    fn trace(&self, field: &F, source: &mut impl UniformSource, walk: &mut Vec<Interaction>);
 
     /// The control's transmittance up to `s`.
     fn main_transmittance(&self, s: f64) -> f64;
@@ -54,7 +54,7 @@ pub trait TransmittanceFunction<F: Extinction>: TransmittanceEstimator<F> {
 
 impl<F: Extinction, E: TransmittanceEstimator<F>> TransmittanceEstimator<F> for &E {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         (**self).estimate(field, source)
     }
     #[inline]

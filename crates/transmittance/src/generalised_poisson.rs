@@ -66,7 +66,7 @@ impl GeneralisedPoisson {
 
 impl<F: Extinction> TransmittanceEstimator<F> for GeneralisedPoisson {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let length = field.length();
         let mut product = SignedProduct::ONE;
         for _ in 0..poisson(self.rate, source) {

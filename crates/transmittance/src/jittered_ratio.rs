@@ -131,11 +131,11 @@ impl Strata {
 
 /// Multiplies `product` by F of each stratum of the cell that begins at `from`.
 #[inline]
-fn multiply_cell<F: Extinction, S: UniformSource + ?Sized>(
+fn multiply_cell<F: Extinction>(
     product: &mut SignedProduct,
     field: &F,
     (from, cell, epsilon): (f64, &BoundCell, f64),
-    source: &mut S,
+    source: &mut impl UniformSource,
 ) {
     let strata = Strata::of(cell, from, epsilon);
     // Rounding may carry the last point of a cell to its end, where σ_t may jump to what the next cell bounds.
@@ -163,7 +163,7 @@ fn multiply_cell<F: Extinction, S: UniformSource + ?Sized>(
 
 impl<F: Majorant> TransmittanceEstimator<F> for JitteredRatio {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut product = SignedProduct::ONE;
         multiply_cell(&mut product, field, (0.0, &Self::cell(field), self.epsilon), source);
         product.times_exp(0.0)
@@ -178,7 +178,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for JitteredRatio {
 
 impl<F: BoundedInCells> TransmittanceEstimator<F> for JitteredRatioInCells {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut product = SignedProduct::ONE;
         let (mut minorant_thickness, mut from) = (0.0, 0.0);
         for cell in field.bound_cells() {

@@ -71,19 +71,18 @@ impl LineIntegral {
     ///
     /// T is a number or a colour: whatever can be added, and multiplied by a number.
     #[inline]
-    pub fn integrate<F, S, T>(
+    pub fn integrate<
+        F: Majorant,
+        S: UniformSource,
+        T: Copy + std::ops::AddAssign + std::ops::Mul<f64, Output = T>,
+    >(
         &self,
         field: &F,
         starts: Starts,
         source: &mut S,
         end: T,
         mut collision: impl FnMut(f64, f64, &mut S) -> T,
-    ) -> T
-    where
-        F: Majorant,
-        S: UniformSource + ?Sized,
-        T: Copy + std::ops::AddAssign + std::ops::Mul<f64, Output = T>,
-    {
+    ) -> T {
         let p_volume = collision_probability(field);
         if p_volume == 0.0 {
             return end;
@@ -113,7 +112,7 @@ impl LineIntegral {
 /// Transmittance is the integral with c_∂V = 1 and c_V = 0.
 impl<F: Majorant> TransmittanceEstimator<F> for LineIntegral {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         self.integrate(field, Starts::Equidistant, source, 1.0, |_, _, _| 0.0)
     }
 

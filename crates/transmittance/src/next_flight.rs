@@ -68,7 +68,7 @@ impl NextFlight {
 
 impl<F: Majorant> TransmittanceEstimator<F> for NextFlight {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         if majorant <= 0.0 {
             return 1.0; // nothing is admitted but a vacuum

@@ -135,13 +135,13 @@ fn surely_drawn(mean: f64) -> u32 {
 
 /// Whether an event of this probability happens. One that is sure costs no variate.
 #[inline]
-fn happens<S: UniformSource + ?Sized>(probability: f64, source: &mut S) -> bool {
+fn happens(probability: f64, source: &mut impl UniformSource) -> bool {
     probability >= 1.0 || source.next_uniform() < probability
 }
 
 /// A number of the Poisson law of this mean: that of exponential steps that fit into it.
 #[inline]
-pub(crate) fn poisson<S: UniformSource + ?Sized>(mean: f64, source: &mut S) -> u32 {
+pub(crate) fn poisson(mean: f64, source: &mut impl UniformSource) -> u32 {
     let (mut count, mut sum) = (0, source.next_exponential());
     while sum < mean {
         count += 1;
@@ -153,12 +153,12 @@ pub(crate) fn poisson<S: UniformSource + ?Sized>(mean: f64, source: &mut S) -> u
 impl PSeries {
     /// X, the optical thickness that one point stands for.
     #[inline]
-    fn point<F: Extinction, S: UniformSource + ?Sized>(field: &F, source: &mut S) -> f64 {
+    fn point<F: Extinction>(field: &F, source: &mut impl UniformSource) -> f64 {
         let length = field.length();
         length * field.sigma_t(length * source.next_uniform())
     }
 
-    fn cmf<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn cmf<F: Extinction>(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut term = self.first;
         let mut sum = term;
         for k in 1_u32.. {
@@ -176,7 +176,7 @@ impl PSeries {
         sum.value()
     }
 
-    fn cumulative<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn cumulative<F: Extinction>(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut term = self.first;
         let mut sum = term;
         for k in 1_u32.. {
@@ -193,7 +193,7 @@ impl PSeries {
         sum.value()
     }
 
-    fn ratio<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn ratio<F: Extinction>(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut product = SignedProduct::ONE;
         for _ in 0..poisson(self.pivot, source) {
             product.multiply(1.0 - Self::point(field, source) / self.pivot);
@@ -204,7 +204,7 @@ impl PSeries {
     /// With p_k the Poisson probabilities and h_k = p_k/P_k, term k is h_k Π_{i ≤ k} (1 − X_i/t_c): the sum is nested, and
     /// evaluated from its end, as the points may come in any order. 1/h_k = Σ_j t_c^j k!/(k + j)! = 1 + t_c/(k + 1)/h_{k+1}:
     /// downwards stable, of positive terms only; 1/h_0 = exp(t_c) may overflow, to an h_0 of 0.
-    fn next_flight<F: Extinction, S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn next_flight<F: Extinction>(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let last = poisson(self.pivot, source);
         let mut reciprocal = remainder(self.pivot, f64::from(last));
         let mut sum = SignedProduct::of(1.0 / reciprocal);
@@ -376,7 +376,7 @@ impl<F: Extinction> ClosedForm<F> for PSeries {
 
 impl<F: Extinction> TransmittanceEstimator<F> for PSeries {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         match self.version {
             PSeriesVersion::Cmf => self.cmf(field, source),
             PSeriesVersion::Cumulative => self.cumulative(field, source),

@@ -59,7 +59,7 @@ impl ProgressiveMajorant {
 
     /// Draws one estimate with the guess as it is, and raises the guess where σ_t exceeds it.
     #[inline]
-    pub fn estimate<F: Extinction, S: UniformSource + ?Sized>(&mut self, field: &F, source: &mut S) -> f64 {
+    pub fn estimate<F: Extinction>(&mut self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (mut weight, mut s) = (SignedProduct::ONE, 0.0);
         loop {
             s += source.next_exponential() / self.majorant;

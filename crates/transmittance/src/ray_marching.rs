@@ -52,7 +52,7 @@ impl RayMarching {
 
 impl<F: Extinction> TransmittanceEstimator<F> for RayMarching {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let offset = match self.offset {
             Offset::Fixed => 0.5,
             Offset::Jittered => source.next_uniform(),

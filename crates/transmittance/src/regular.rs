@@ -13,7 +13,7 @@ pub struct Regular;
 
 impl<F: OpticalThickness> TransmittanceEstimator<F> for Regular {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, _source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, _source: &mut impl UniformSource) -> f64 {
         (-field.optical_thickness(0.0, field.length())).exp()
     }
 

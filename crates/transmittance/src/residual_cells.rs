@@ -65,7 +65,7 @@ impl ResidualCells {
 
 impl<F: BoundedInCells> TransmittanceEstimator<F> for ResidualCells {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut weight = SignedProduct::ONE;
         let (mut minorant_thickness, mut from) = (0.0, 0.0);
         // One free flight through all cells: what a cell does not use up of its depth is left for the next.

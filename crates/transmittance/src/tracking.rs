@@ -78,10 +78,10 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
     /// One walk. `visit` sees each interaction point, σ_t there and the weight behind it; the walk's weight at the end is returned,
     /// or `None` where it ended before.
     #[inline]
-    fn walk<F: Extinction, S: UniformSource + ?Sized>(
+    fn walk<F: Extinction>(
         &self,
         field: &F,
-        source: &mut S,
+        source: &mut impl UniformSource,
         mut visit: impl FnMut(f64, f64, Option<&SignedProduct>),
     ) -> Option<SignedProduct> {
         let mut weight = SignedProduct::ONE;
@@ -100,15 +100,11 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
     }
 }
 
-impl<F, M, C, R> TransmittanceEstimator<F> for Tracking<M, C, R>
-where
-    F: Extinction,
-    M: CollisionModel,
-    C: OpticalThickness,
-    R: InvertOpticalThickness,
+impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness>
+    TransmittanceEstimator<F> for Tracking<M, C, R>
 {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         match self.walk(field, source, |_, _, _| {}) {
             Some(weight) => weight.times_exp(-self.main_thickness),
@@ -131,14 +127,10 @@ where
     }
 }
 
-impl<F, M, C, R> TransmittanceFunction<F> for Tracking<M, C, R>
-where
-    F: Extinction,
-    M: CollisionModel,
-    C: OpticalThickness,
-    R: InvertOpticalThickness,
+impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness>
+    TransmittanceFunction<F> for Tracking<M, C, R>
 {
-    fn trace<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S, walk: &mut Vec<Interaction>) {
+    fn trace(&self, field: &F, source: &mut impl UniformSource, walk: &mut Vec<Interaction>) {
         self.walk(field, source, |distance, sigma_t, weight| {
             let weight = weight.map_or(0.0, |weight| weight.times_exp(0.0));
             walk.push(Interaction { distance, sigma_t, weight });
@@ -150,12 +142,8 @@ where
     }
 }
 
-impl<F, M, C, R> ClosedForm<F> for Tracking<M, C, R>
-where
-    F: Extinction,
-    M: CollisionModel,
-    C: OpticalThickness,
-    R: InvertOpticalThickness,
+impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> ClosedForm<F>
+    for Tracking<M, C, R>
 {
     fn theory(
         &self,

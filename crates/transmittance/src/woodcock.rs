@@ -21,7 +21,7 @@ pub struct Woodcock;
 
 impl<F: Majorant> TransmittanceEstimator<F> for Woodcock {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         match collides(field, source.next_exponential(), source) {
             Some(_) => 0.0,
             None => 1.0,
@@ -37,10 +37,10 @@ impl<F: Majorant> TransmittanceEstimator<F> for Woodcock {
 /// Follows a flight, the first step of which has the optical length `first` in the majorant: where it collides with matter,
 /// and σ_t there; `None` if it leaves the profile.
 #[inline]
-pub(crate) fn collides<F: Majorant, S: UniformSource + ?Sized>(
+pub(crate) fn collides<F: Majorant>(
     field: &F,
     first: f64,
-    source: &mut S,
+    source: &mut impl UniformSource,
 ) -> Option<(f64, f64)> {
     let majorant = field.majorant();
     let mean_free_path = 1.0 / majorant;

@@ -41,11 +41,13 @@ impl Sweep {
 
     /// Draws a few estimates from several seeds (about `lookups` each), and asks for the law. An estimator that does not admit the
     /// profile is left out.
-    fn check<G, E>(&mut self, kind: &str, field: G, estimator: &E, (law, lookups): (Law, f64))
-    where
-        G: Breakpoints + OpticalThickness + Copy,
-        E: TransmittanceEstimator<G> + ClosedForm<G>,
-    {
+    fn check<G: Breakpoints + OpticalThickness + Copy, E: TransmittanceEstimator<G> + ClosedForm<G>>(
+        &mut self,
+        kind: &str,
+        field: G,
+        estimator: &E,
+        (law, lookups): (Law, f64),
+    ) {
         let length = field.length();
         let places = (0..=400).map(|i| length * f64::from(i) / 400.0);
         if !places.clone().all(|s| estimator.admits(&field, s, field.sigma_t(s))) {

@@ -85,11 +85,11 @@ impl<C: Spectrum> Emitters<C> {
     }
 
     /// Draws the start of a light path; `None` if nothing shines.
-    pub fn sample<G: Geometry<C>, S: UniformSource + ?Sized>(
+    pub fn sample<G: Geometry<C>>(
         &self,
         lights: &Lights<C>,
         geometry: &G,
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> Option<Start<C>> {
         let total = self.cumulative.last().copied().filter(|&total| total > 0.0)?;
         let target = source.next_uniform() * total;

@@ -3,8 +3,8 @@
 use crate::{Gather, Term, Vpl};
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Bounds, EmptySpace, Homogeneous};
-use fairflight_paths::transport::{Lobe, Vertex, World};
+use fairflight_media::{Bounds, EmptySpace, Homogeneous, LineThickness};
+use fairflight_paths::transport::{Lobe, MadeOf, Vertex, World};
 use fairflight_paths::{Heuristic, Uniform, Walk};
 use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{Background, Lights, Material, Shape, Source, Spectrum, Surface, Surfaces, Volume};
@@ -18,16 +18,17 @@ pub(crate) struct Scene<M, C> {
     pub(crate) lights: Lights<C>,
 }
 
-pub(crate) type SceneGather<'s, M> = Gather<'s, Surfaces<f64>, M, HenyeyGreenstein, f64, Uniform, Regular>;
+/// The types of a scene.
+pub(crate) type Hazy<M, C> = MadeOf<C, M, HenyeyGreenstein, Surfaces<C>, Uniform, Regular>;
 
-impl<M, C: Spectrum> Scene<M, C> {
-    pub(crate) fn world(&self) -> World<'_, Surfaces<C>, M, HenyeyGreenstein, C> {
-        World { volume: &self.volume, surfaces: &self.surfaces, lights: &self.lights }
+impl<M: LineThickness, C: Spectrum> Scene<M, C> {
+    pub(crate) fn world(&self) -> World<'_, Hazy<M, C>> {
+        World::new(&self.volume, &self.surfaces, &self.lights)
     }
 }
 
-impl<M> Scene<M, f64> {
-    pub(crate) fn gather<'s>(&'s self, vpls: &'s [Vpl<f64>], term: Term) -> SceneGather<'s, M> {
+impl<M: LineThickness> Scene<M, f64> {
+    pub(crate) fn gather<'s>(&'s self, vpls: &'s [Vpl<f64>], term: Term) -> Gather<'s, Hazy<M, f64>> {
         let (world, heuristic) = (self.world(), Heuristic::Balance);
         Gather { world, vpls, term, heuristic, walk: walk(), shadow: Regular }
     }

@@ -1,11 +1,12 @@
 //! Gathering: what virtual point lights add at a vertex (engelhardt-2013 section 3.3).
 
 use crate::Vpl;
-use fairflight_media::{Line, Medium, PhaseFunction};
-use fairflight_paths::transport::{Scattered, Vertex, World};
-use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
+use fairflight_media::Line;
+use fairflight_paths::transport::{Scattered, Types, Vertex, World};
+use fairflight_paths::{Heuristic, Walk};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
+use std::fmt;
 
 /// How much of the geometric term G a connection takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,39 +50,41 @@ pub enum Connected {
 /// r² dr of them lie there. With a bound one adds at most power · f · f · b.
 ///
 /// A light exactly at the vertex adds nothing: a set of measure zero, in which no direction is defined.
-#[derive(Debug)]
-pub struct Gather<'s, G, M, P, C, R, T> {
+pub struct Gather<'s, W: Types> {
     /// Where.
-    pub world: World<'s, G, M, P, C>,
+    pub world: World<'s, W>,
     /// The lights.
-    pub vpls: &'s [Vpl<C>],
+    pub vpls: &'s [Vpl<W::Spectrum>],
     /// How much of G a connection takes.
     pub term: Term,
     /// How emitters are sampled.
     pub heuristic: Heuristic,
     /// Flights through the medium.
-    pub walk: Walk<R>,
+    pub walk: Walk<W::Sampling>,
     /// Transmittance of connections.
-    pub shadow: T,
+    pub shadow: W::Shadow,
 }
 
-impl<G, M, P, C, R, T> Gather<'_, G, M, P, C, R, T>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-{
+impl<W: Types> fmt::Debug for Gather<'_, W> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { term, heuristic, .. } = self;
+        formatter
+            .debug_struct("Gather")
+            .field("term", term)
+            .field("heuristic", heuristic)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<W: Types> Gather<'_, W> {
     /// What one virtual point light adds.
     #[inline]
-    pub fn one<S: UniformSource + ?Sized>(&mut self, y: &Vertex, index: usize, source: &mut S) -> C {
+    pub fn one(&mut self, y: &Vertex, index: usize, source: &mut impl UniformSource) -> W::Spectrum {
         let vpl = &self.vpls[index];
         let offset = vpl.vertex.position - y.position;
         let squared = offset.length_squared();
         if squared == 0.0 {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
         let distance = squared.sqrt();
         let direction = offset / distance;
@@ -89,7 +92,7 @@ where
         let geometric = y.cosine(direction) * vpl.vertex.cosine(-direction) / squared;
         let term = self.term.of(geometric);
         if term == 0.0 || geometric == 0.0 {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
         let (from, to) = (y.surface(), vpl.vertex.surface());
         let surfaces = self.world.surfaces.surfaces();
@@ -98,12 +101,12 @@ where
             && let Some(index) = from
             && !surfaces[index].shape.is_closed()
         {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
         let segment = Segment { line: Line { origin: y.position, direction }, length: distance, from, to };
         let visibility = self.world.attenuated_visibility(&segment, &mut self.shadow, source);
         if visibility == 0.0 {
-            return C::ZERO;
+            return W::Spectrum::ZERO;
         }
         let phase = &self.world.volume.phase;
         let scattering = y.eval(phase, direction) * vpl.eval(phase, -direction);
@@ -112,17 +115,17 @@ where
 
     /// What several of them add.
     #[inline(never)]
-    pub fn connected<S: UniformSource + ?Sized>(
+    pub fn connected(
         &mut self,
         y: &Vertex,
         which: Connected,
-        source: &mut S,
-    ) -> C {
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
         match which {
-            Connected::Nothing => C::ZERO,
+            Connected::Nothing => W::Spectrum::ZERO,
             Connected::One(index) => self.one(y, index, source),
             Connected::All => {
-                let mut sum = C::ZERO;
+                let mut sum = W::Spectrum::ZERO;
                 for index in 0..self.vpls.len() {
                     sum += self.one(y, index, source);
                 }
@@ -146,7 +149,7 @@ where
     ///
     /// Never bounded: an emitter of some size is left to the weights, and a point cannot be compensated.
     #[inline(never)]
-    pub fn emitters<S: UniformSource + ?Sized>(&mut self, y: &Vertex, source: &mut S) -> C {
+    pub fn emitters(&mut self, y: &Vertex, source: &mut impl UniformSource) -> W::Spectrum {
         let Self { world, heuristic, walk, shadow, .. } = self;
         let mut radiance = world.emitters_at(*heuristic, y, shadow, source);
         let is_chosen_in_vain = world.lights.background.is_dark()
@@ -173,7 +176,7 @@ where
             let behind = world.trace(walk, (*heuristic, MOST_VERTICES), next, shadow, source);
             arriving += behind.radiance * passage.radiance_scale;
         }
-        if arriving != C::ZERO {
+        if arriving != W::Spectrum::ZERO {
             radiance += arriving * world.transmittance(&segment, shadow, source);
         }
         radiance
@@ -187,6 +190,7 @@ const MOST_VERTICES: u32 = 10_000;
 mod tests {
     use super::*;
     use crate::fixtures::{ball, diffuse, hazy, in_medium, on_surface, square, vacuum, vpl};
+    use fairflight_media::PhaseFunction;
     use fairflight_scene::{Material, Source};
     use fairflight_sources::Scripted;
     use glam::{DVec3, dvec3};

@@ -1,9 +1,9 @@
 //! Radiance from virtual point lights (instant radiosity, raab-2008 section 4.2, engelhardt-2013 section 3.3).
 
 use crate::{Connected, Correction, Gather};
-use fairflight_media::{Line, Medium, PhaseFunction};
-use fairflight_paths::transport::{Event, Vertex};
-use fairflight_paths::{Integrator, RayTransmittance, SamplingExtinction};
+use fairflight_media::Line;
+use fairflight_paths::Integrator;
+use fairflight_paths::transport::{Event, Types, Vertex};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 
@@ -45,8 +45,8 @@ pub enum Component {
 ///
 /// Smooth surfaces are followed: no virtual point light lies on them and no connection passes them.
 #[derive(Debug)]
-pub struct VplIntegrator<'s, G, M, P, C, R, T, K> {
-    gather: Gather<'s, G, M, P, C, R, T>,
+pub struct VplIntegrator<'s, W: Types, K> {
+    gather: Gather<'s, W>,
     eye_samples: u32,
     pairing: Pairing,
     correction: K,
@@ -57,13 +57,9 @@ pub struct VplIntegrator<'s, G, M, P, C, R, T, K> {
 /// Smooth surfaces on one path from the camera; longer ones are cut, and counted.
 const MOST_SMOOTH: u32 = 1000;
 
-impl<'s, G, M, P, C, R, T, K> VplIntegrator<'s, G, M, P, C, R, T, K> {
+impl<'s, W: Types, K> VplIntegrator<'s, W, K> {
     /// `eye_samples` ≥ 1 flights by `walk` along each camera ray.
-    pub fn new(
-        gather: Gather<'s, G, M, P, C, R, T>,
-        (eye_samples, pairing): (u32, Pairing),
-        correction: K,
-    ) -> Self {
+    pub fn new(gather: Gather<'s, W>, (eye_samples, pairing): (u32, Pairing), correction: K) -> Self {
         Self {
             gather,
             eye_samples: eye_samples.max(1),
@@ -91,18 +87,9 @@ impl<'s, G, M, P, C, R, T, K> VplIntegrator<'s, G, M, P, C, R, T, K> {
     }
 }
 
-impl<G, M, P, C, R, T, K> VplIntegrator<'_, G, M, P, C, R, T, K>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-    K: Correction<C>,
-{
+impl<W: Types, K: Correction<W>> VplIntegrator<'_, W, K> {
     /// What is scattered at `y`, per albedo or reflectance, as the `j`-th of `of` points of a ray.
-    fn shade<S: UniformSource + ?Sized>(&mut self, y: &Vertex, (j, of): (u32, u32), source: &mut S) -> C {
+    fn shade(&mut self, y: &Vertex, (j, of): (u32, u32), source: &mut impl UniformSource) -> W::Spectrum {
         let Self { gather, correction, component, .. } = self;
         let count = gather.vpls.len();
         let (which, scale) = match self.pairing {
@@ -114,7 +101,7 @@ where
                 (Connected::One(((place * count as f64) as usize).min(count - 1)), count as f64)
             }
         };
-        let mut radiance = C::ZERO;
+        let mut radiance = W::Spectrum::ZERO;
         if *component != Component::Correction {
             radiance += gather.connected(y, which, source) * scale;
         }
@@ -128,17 +115,17 @@ where
     }
 
     /// The radiance that arrives along a ray; `smooth` surfaces were met before.
-    fn arriving<S: UniformSource + ?Sized>(
+    fn arriving(
         &mut self,
         mut segment: Segment,
         smooth: u32,
-        source: &mut S,
-    ) -> C {
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
         let world = self.gather.world;
         let hit = world.surfaces.intersect(&segment);
         segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
         let heuristic = self.gather.heuristic;
-        let mut behind = C::ZERO;
+        let mut behind = W::Spectrum::ZERO;
         if self.component == Component::All {
             let direction = segment.line.direction;
             behind += match &hit {
@@ -157,8 +144,8 @@ where
                 self.truncated += 1;
             }
         }
-        let mut radiance = C::ZERO;
-        if behind != C::ZERO {
+        let mut radiance = W::Spectrum::ZERO;
+        if behind != W::Spectrum::ZERO {
             radiance += behind * world.transmittance(&segment, &mut self.gather.shadow, source);
         }
 
@@ -170,7 +157,7 @@ where
         if !scatters && surface.is_none() {
             return radiance;
         }
-        let mut scattered = C::ZERO;
+        let mut scattered = W::Spectrum::ZERO;
         for j in 0..flights {
             let (vertex, factor) = match world.follow(&self.gather.walk, &collisions, &segment, source) {
                 Event::Scattered { vertex, energy } => (vertex, energy),
@@ -190,17 +177,8 @@ where
     }
 }
 
-impl<G, M, P, C, R, T, K> Integrator<C> for VplIntegrator<'_, G, M, P, C, R, T, K>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-    K: Correction<C>,
-{
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+impl<W: Types, K: Correction<W>> Integrator<W::Spectrum> for VplIntegrator<'_, W, K> {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> W::Spectrum {
         let segment = Segment { line: *line, length: f64::INFINITY, from: None, to: None };
         self.arriving(segment, 0, source)
     }
@@ -209,7 +187,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{Scene, SceneGather, diffuse, hazy, on_surface, square, vacuum, vpl};
+    use crate::fixtures::{Hazy, Scene, diffuse, hazy, on_surface, square, vacuum, vpl};
     use crate::{Term, Uncorrected, Vpl};
     use fairflight_scene::{Material, Source};
     use fairflight_sources::Scripted;
@@ -227,24 +205,16 @@ mod tests {
         Spy { adds, asked: Vec::new() }
     }
 
-    impl<C: Spectrum> Correction<C> for Spy {
-        fn recover<G, M, P, R, T, S>(
+    impl<W: Types> Correction<W> for Spy {
+        fn recover(
             &mut self,
-            _gather: &mut Gather<'_, G, M, P, C, R, T>,
+            _gather: &mut Gather<'_, W>,
             _y: &Vertex,
             which: Connected,
-            _source: &mut S,
-        ) -> C
-        where
-            G: Geometry<C>,
-            M: Medium,
-            P: PhaseFunction,
-            R: SamplingExtinction,
-            T: RayTransmittance<M>,
-            S: UniformSource + ?Sized,
-        {
+            _source: &mut impl UniformSource,
+        ) -> W::Spectrum {
             self.asked.push(which);
-            C::splat(self.adds)
+            W::Spectrum::splat(self.adds)
         }
     }
 
@@ -277,7 +247,7 @@ mod tests {
     }
 
     fn render<M: fairflight_media::LineThickness>(
-        gather: SceneGather<'_, M>,
+        gather: Gather<'_, Hazy<M, f64>>,
         how: (u32, Pairing),
         component: Component,
         (correction, script): (Spy, &[f64]),

@@ -1,9 +1,9 @@
 //! Light paths, whose vertices are virtual point lights (engelhardt-2013 section 3.2, raab-2008 section 4.2).
 
 use crate::{Emitters, KeepNear, Ledger, Vpl};
-use fairflight_media::{Line, Medium, PhaseFunction};
-use fairflight_paths::transport::{Event, World};
-use fairflight_paths::{SamplingExtinction, Walk};
+use fairflight_media::Line;
+use fairflight_paths::Walk;
+use fairflight_paths::transport::{Event, Types, World};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 
@@ -30,10 +30,10 @@ use fairflight_sources::UniformSource;
 /// **Variance.** A sampling extinction below the extinction gives powers of either sign; subcriticality is that of the
 /// [`Walk`].
 #[derive(Debug)]
-pub struct LightPaths<'s, G, M, P, C, R> {
-    world: World<'s, G, M, P, C>,
-    emitters: &'s Emitters<C>,
-    walk: Walk<R>,
+pub struct LightPaths<'s, W: Types> {
+    world: World<'s, W>,
+    emitters: &'s Emitters<W::Spectrum>,
+    walk: Walk<W::Sampling>,
     keep_near: Option<KeepNear>,
     max_vertices: u32,
 }
@@ -41,16 +41,9 @@ pub struct LightPaths<'s, G, M, P, C, R> {
 /// Longer paths are cut, and counted: only a scene without absorption has them.
 const MOST_VERTICES: u32 = 10_000;
 
-impl<'s, G, M, P, C, R> LightPaths<'s, G, M, P, C, R>
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-{
+impl<'s, W: Types> LightPaths<'s, W> {
     /// Light paths from `emitters` through `world` that fly by `walk`.
-    pub fn new(world: World<'s, G, M, P, C>, emitters: &'s Emitters<C>, walk: Walk<R>) -> Self {
+    pub fn new(world: World<'s, W>, emitters: &'s Emitters<W::Spectrum>, walk: Walk<W::Sampling>) -> Self {
         Self { world, emitters, walk, keep_near: None, max_vertices: MOST_VERTICES }
     }
 
@@ -67,12 +60,12 @@ where
     }
 
     /// Traces one path that carries `share` of all power (1/N for N paths); `deposit` takes its virtual point lights.
-    pub fn trace<S: UniformSource + ?Sized>(
+    pub fn trace(
         &self,
         share: f64,
-        ledger: &mut Ledger<C>,
-        source: &mut S,
-        mut deposit: impl FnMut(Vpl<C>),
+        ledger: &mut Ledger<W::Spectrum>,
+        source: &mut impl UniformSource,
+        mut deposit: impl FnMut(Vpl<W::Spectrum>),
     ) {
         let world = &self.world;
         ledger.paths += 1;
@@ -108,7 +101,7 @@ where
                     }
                     let (vertex, reflectance) =
                         world.diffuse_vertex(&hit).expect("what is not smooth is diffuse");
-                    ledger.absorbed += power * (C::splat(1.0) + reflectance * -1.0);
+                    ledger.absorbed += power * (W::Spectrum::splat(1.0) + reflectance * -1.0);
                     (vertex, reflectance)
                 }
                 Event::Absorbed => return,
@@ -148,9 +141,9 @@ fn share_absorbed<C: Spectrum>(scattered: C, albedo: C) -> C {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{Scene, ball, diffuse, hazy, on_surface, square, vacuum, walk};
+    use crate::fixtures::{Hazy, Scene, ball, diffuse, hazy, on_surface, square, vacuum, walk};
     use fairflight_collision::Version;
-    use fairflight_paths::Uniform;
+    use fairflight_media::LineThickness;
     use fairflight_scene::{Material, Source};
     use fairflight_sources::{Scripted, Seeded};
     use glam::{DVec3, dvec3};
@@ -161,7 +154,7 @@ mod tests {
     const CARRIED: f64 = 2.0;
 
     /// What one path of these variates, all of which it must use, leaves behind.
-    fn traced<M: Medium, C: Spectrum>(
+    fn traced<M: LineThickness, C: Spectrum>(
         scene: &Scene<M, C>,
         change: impl FnOnce(Paths<'_, M, C>) -> Paths<'_, M, C>,
         script: &[f64],
@@ -175,14 +168,7 @@ mod tests {
         (vpls, ledger)
     }
 
-    type Paths<'s, M, C> = LightPaths<
-        's,
-        fairflight_scene::Surfaces<C>,
-        M,
-        fairflight_media::phase::HenyeyGreenstein,
-        C,
-        Uniform,
-    >;
+    type Paths<'s, M, C> = LightPaths<'s, Hazy<M, C>>;
 
     fn emitters<M, C: Spectrum>(scene: &Scene<M, C>) -> Emitters<C> {
         Emitters::new(&scene.lights, &scene.surfaces, (DVec3::ZERO, 20.0), DVec3::ZERO)

@@ -38,7 +38,7 @@ fn both_integrators_see_the_same_of_a_point_light_and_a_mirror() {
     let lights = Lights { background: Background::dark(), sources: vec![light] };
     let bounds = Bounds::sphere(DVec3::ZERO, 1.0).unwrap();
     let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: Isotropic };
-    let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+    let world = World::new(&volume, &surfaces, &lights);
     let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).unwrap());
     let eye = Line { origin: dvec3(0.2, 0.1, 0.5), direction: DVec3::Z };
 

@@ -35,12 +35,11 @@ impl<E> ByMajorant<E> {
     }
 }
 
-impl<F: Extinction, E> TransmittanceEstimator<F> for ByMajorant<E>
-where
-    E: for<'a> TransmittanceEstimator<Bounded<&'a F>>,
+impl<F: Extinction, E: for<'a> TransmittanceEstimator<Bounded<&'a F>>> TransmittanceEstimator<F>
+    for ByMajorant<E>
 {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         self.estimator.estimate(&self.claim.with_field(field), source)
     }
     #[inline]
@@ -67,12 +66,11 @@ pub(super) struct ByCells<E> {
     pub(super) cells: InCells<Vacuum, Vec<BoundCell>>,
 }
 
-impl<F: Extinction, E> TransmittanceEstimator<F> for ByCells<E>
-where
-    E: for<'a, 'b> TransmittanceEstimator<InCells<&'a F, &'b [BoundCell]>>,
+impl<F: Extinction, E: for<'a, 'b> TransmittanceEstimator<InCells<&'a F, &'b [BoundCell]>>>
+    TransmittanceEstimator<F> for ByCells<E>
 {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         self.estimator.estimate(&self.cells.with_field(field), source)
     }
     #[inline]
@@ -81,10 +79,7 @@ where
     }
 }
 
-impl<F: Extinction + Copy, E> ClosedForm<F> for ByCells<E>
-where
-    E: for<'b> ClosedForm<InCells<F, &'b [BoundCell]>>,
-{
+impl<F: Extinction + Copy, E: for<'b> ClosedForm<InCells<F, &'b [BoundCell]>>> ClosedForm<F> for ByCells<E> {
     fn theory(&self, nodes: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let field = *nodes.field();
         let mut in_cells = nodes.with_field(self.cells.with_field(field));
@@ -107,10 +102,7 @@ pub trait Erased: Debug + Send + Sync {
     fn admits(&self, field: AnyField<'_>, s: f64, sigma_t: f64) -> bool;
 }
 
-impl<E> Erased for E
-where
-    E: Debug + Send + Sync + for<'a> TransmittanceEstimator<AnyField<'a>>,
-{
+impl<E: Debug + Send + Sync + for<'a> TransmittanceEstimator<AnyField<'a>>> Erased for E {
     fn estimate(&self, field: AnyField<'_>, mut source: &mut dyn UniformSource) -> f64 {
         TransmittanceEstimator::estimate(self, &field, &mut source)
     }

@@ -22,7 +22,7 @@ kind! {
 struct Learning(Mutex<ProgressiveMajorant>);
 
 impl<F: Extinction> TransmittanceEstimator<F> for Learning {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).estimate(field, source)
     }
     fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {

@@ -114,7 +114,7 @@ impl<M: Medium> RayTransmittance<M> for RayWorker<'_> {
     // One copy per medium, and not one in each integrator: a call per ray costs nothing, five estimators in each of dozens of
     // integrators cost minutes of compilation.
     #[inline(never)]
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
+    fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64 {
         let Self { estimator, control, unlawful } = self;
         match estimator {
             RayEstimator::Woodcock(estimator) => watched(ray, estimator, unlawful, source),
@@ -133,7 +133,7 @@ struct Behind<'a>(&'a dyn Erased);
 
 impl<F: Extinction> TransmittanceEstimator<F> for Behind<'_> {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, mut source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, mut source: &mut impl UniformSource) -> f64 {
         self.0.estimate(field as AnyField<'_>, &mut source)
     }
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
@@ -143,12 +143,12 @@ impl<F: Extinction> TransmittanceEstimator<F> for Behind<'_> {
 
 impl<K: CollisionModel + Copy> RayTracking<K> {
     #[inline]
-    fn estimate<M: Medium, S: UniformSource + ?Sized>(
+    fn estimate<M: Medium>(
         &self,
         ray: &Ray<&M>,
         control: &mut AnyControl,
         unlawful: &Cell<Option<Unlawful>>,
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> f64 {
         let length = ray.length();
         let constant =
@@ -165,12 +165,15 @@ impl<K: CollisionModel + Copy> RayTracking<K> {
 
 /// One estimate on a ray.
 #[inline]
-fn watched<M, E, S>(ray: &Ray<&M>, estimator: &E, unlawful: &Cell<Option<Unlawful>>, source: &mut S) -> f64
+fn watched<M: Medium, E>(
+    ray: &Ray<&M>,
+    estimator: &E,
+    unlawful: &Cell<Option<Unlawful>>,
+    source: &mut impl UniformSource,
+) -> f64
 where
-    M: Medium,
     for<'r> E: TransmittanceEstimator<&'r Ray<&'r M>>,
     for<'r, 'w> E: TransmittanceEstimator<Watched<&'r Ray<&'r M>, Admitted<'w, &'r Ray<&'r M>, E>>>,
-    S: UniformSource + ?Sized,
 {
     let watched = Watched::new(ray, Admitted { field: ray, estimator });
     let estimate = estimator.estimate(&watched, source);

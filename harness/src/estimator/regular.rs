@@ -18,7 +18,7 @@ kind! {
 struct Exact(AnyProfile);
 
 impl<F: Extinction> TransmittanceEstimator<F> for Exact {
-    fn estimate<S: UniformSource + ?Sized>(&self, _field: &F, _source: &mut S) -> f64 {
+    fn estimate(&self, _field: &F, _source: &mut impl UniformSource) -> f64 {
         self.0.field().knowledge().optical_thickness.map_or(f64::NAN, |tau| (-tau).exp())
     }
     fn admits(&self, _field: &F, _s: f64, sigma_t: f64) -> bool {

@@ -67,7 +67,7 @@ pub enum ShadowWorker<'a> {
 
 impl<M: LineThickness> RayTransmittance<M> for ShadowWorker<'_> {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) -> f64 {
+    fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64 {
         match self {
             Self::Regular(regular) => RayTransmittance::estimate(regular, ray, source),
             Self::Sampled(worker) => worker.estimate(ray, source),

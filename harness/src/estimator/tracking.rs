@@ -26,10 +26,11 @@ pub(super) fn tracking<M: CollisionModel + Copy>(
 }
 
 /// Adds the facts of a tracking estimator: scores, breakpoints, explorers, objections.
-pub(super) fn with_facts<M>(prepared: Prepared, tracking: AnyTracking<M>, profile: &AnyProfile) -> Prepared
-where
-    M: CollisionModel + Clone + Debug + Send + Sync + 'static,
-{
+pub(super) fn with_facts<M: CollisionModel + Clone + Debug + Send + Sync + 'static>(
+    prepared: Prepared,
+    tracking: AnyTracking<M>,
+    profile: &AnyProfile,
+) -> Prepared {
     let sigma_t = Interval::from(profile.field().knowledge());
     let ratios = scores::ratio_range(sigma_t, tracking.control().range(), tracking.sampling().range());
     let main_thickness = tracking.control().optical_thickness(0.0, profile.length());

@@ -38,12 +38,11 @@ pub trait Estimator<G: Field>:
 {
 }
 
-impl<G: Field, E> Estimator<G> for E where
-    E: Copy
-        + Sync
-        + TransmittanceEstimator<G>
-        + TransmittanceEstimator<Watched<G, Lawful<G, E>>>
-        + TransmittanceEstimator<Counted<Watched<G, Lawful<G, E>>>>
+impl<G: Field, E> Estimator<G> for E
+where
+    E: Copy + Sync + TransmittanceEstimator<G>,
+    E: TransmittanceEstimator<Watched<G, Lawful<G, E>>>,
+    E: TransmittanceEstimator<Counted<Watched<G, Lawful<G, E>>>>,
 {
 }
 
@@ -73,10 +72,9 @@ pub struct On<F, E> {
     upper_bound: f64,
 }
 
-impl<F, E> Trial for On<F, E>
+impl<F: KnownField + Debug + Send, E: Debug + Send + Sync + for<'a> ClosedForm<AnyPieces<'a>>> Trial
+    for On<F, E>
 where
-    F: KnownField + Debug + Send,
-    E: Debug + Send + Sync + for<'a> ClosedForm<AnyPieces<'a>>,
     for<'a> &'a F: Field,
     for<'a> &'a E: Estimator<&'a F>,
 {

@@ -41,11 +41,10 @@ macro_rules! profiles {
 
             /// An estimator on this profile, compiled once for all types of fields: a look-up is then an indirect call, which
             /// `cargo bench --bench lookups` measures.
-            pub fn erased_trial<E>(&self, estimator: E) -> Arc<dyn Trial>
-            where
-                E: 'static,
-                On<ErasedField, E>: Trial,
-            {
+            pub fn erased_trial<E: 'static>(&self, estimator: E) -> Arc<dyn Trial>
+where
+    On<ErasedField, E>: Trial,
+{
                 let field: Arc<dyn KnownField> =
                     match self { $(Self::$Variant(field) => Arc::new(field.clone())),+ };
                 On::trial(ErasedField(field), estimator)

@@ -152,19 +152,13 @@ impl IntegratorPlan {
     ///
     /// # Errors
     /// If the integrator needs a closed form, or does not fit the lights.
-    pub fn by_look_ups<'s, M, P, C, J>(
+    pub fn by_look_ups<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         match self {
             Self::SingleScattering(plan) => plan.by_look_ups(volume, stage.lights, unlawful, job),
             Self::PathTracer(plan) => plan.by_look_ups(volume, stage, unlawful, job),
@@ -177,19 +171,13 @@ impl IntegratorPlan {
     ///
     /// # Errors
     /// If the integrator does not fit the lights.
-    pub fn by_closed_form<'s, M, P, C, J>(
+    pub fn by_closed_form<'s, M: LineThickness, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: LineThickness,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         if M::IS_EMPTY {
             // Only integrators that know surfaces have anything to do: all others see the background.
             return Ok(match self {
@@ -208,19 +196,13 @@ impl IntegratorPlan {
     }
 
     /// Integrators that are the same whatever is known of the medium; one copy of each per medium.
-    fn on_any_medium<'s, M, P, C, J>(
+    fn on_any_medium<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         lights: &'s Lights<C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         match self {
             Self::Transmittance(estimator) => {
                 Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))

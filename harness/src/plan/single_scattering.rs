@@ -91,19 +91,13 @@ impl SingleScatteringPlan {
         }
     }
 
-    pub(super) fn by_look_ups<'s, M, P, C, J>(
+    pub(super) fn by_look_ups<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         lights: &'s Lights<C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         let shadow = self
             .shadow
             .by_look_ups(unlawful)
@@ -111,19 +105,13 @@ impl SingleScatteringPlan {
         self.tracked(volume, lights, shadow, job)
     }
 
-    pub(super) fn by_closed_form<'s, M, P, C, J>(
+    pub(super) fn by_closed_form<'s, M: LineThickness, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         lights: &'s Lights<C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: LineThickness,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         let shadow = self.shadow.by_closed_form(unlawful);
         match self.primary {
             PrimaryPlan::Regular => self.with(volume, lights, Regular, shadow, job),
@@ -132,20 +120,13 @@ impl SingleScatteringPlan {
     }
 
     /// What needs look-ups only, whatever the shadow rays do.
-    fn tracked<'s, M, P, C, T, J>(
+    fn tracked<'s, M: Medium, P: PhaseFunction, C: Spectrum, T: RayTransmittance<M>, J: IntegratorJob<C>>(
         &self,
         volume: &'s Volume<M, P, C>,
         lights: &'s Lights<C>,
         shadow: T,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        T: RayTransmittance<M>,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         let refuse = |error| Failure::refused(format!("integrator.estimator.sigma_samp: {error}"));
         let explorers = |wanted: bool| wanted.then(|| self.explorers()).transpose();
         match self.primary {
@@ -168,22 +149,22 @@ impl SingleScatteringPlan {
         }
     }
 
-    fn with<'s, M, P, C, W, T, J>(
-        &self,
-        volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
-        walk: W,
-        shadow: T,
-        job: J,
-    ) -> Result<J::Output, Failure>
-    where
+    fn with<
+        's,
         M: Medium,
         P: PhaseFunction,
         C: Spectrum,
         W: Primary<M>,
         T: RayTransmittance<M>,
         J: IntegratorJob<C>,
-    {
+    >(
+        &self,
+        volume: &'s Volume<M, P, C>,
+        lights: &'s Lights<C>,
+        walk: W,
+        shadow: T,
+        job: J,
+    ) -> Result<J::Output, Failure> {
         let asked = (self.sampling, self.samples);
         SingleScattering::new(volume, lights, asked, walk, shadow, self.explorers()?)
             .map(|integrator| job.run(integrator))
@@ -298,7 +279,7 @@ enum AnyTracked {
 }
 
 impl<M: Medium> Primary<M> for AnyTracked {
-    fn trace<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) {
+    fn trace(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) {
         match self {
             Self::Double(walk) => walk.trace(ray, source),
             Self::Single(walk) => walk.trace(ray, source),

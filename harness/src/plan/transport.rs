@@ -8,8 +8,8 @@ use crate::field::{AnyMedium, MediumJob};
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
 use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
-use fairflight_paths::transport::{Vertex, World};
-use fairflight_paths::{Heuristic, Integrator, PathTracer, RayTransmittance, SamplingExtinction};
+use fairflight_paths::transport::{Types, Vertex, World};
+use fairflight_paths::{Heuristic, PathTracer, RayTransmittance};
 use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces, Volume};
 use fairflight_sources::UniformSource;
 use fairflight_vpl::{
@@ -174,77 +174,51 @@ pub(super) trait AmongSurfaces {
     fn transport(&self) -> &TransportPlan;
 
     /// Does a job with the integrator.
-    fn run<'s, G, M, P, C, T, J>(
+    fn run<'s, W: Types<Sampling = SpaceSampling<'s>>, J: IntegratorJob<W::Spectrum>>(
         &'s self,
-        world: World<'s, G, M, P, C>,
-        stage: Stage<'s, C>,
-        shadow: T,
+        world: World<'s, W>,
+        stage: Stage<'s, W::Spectrum>,
+        shadow: W::Shadow,
         job: J,
-    ) -> J::Output
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        T: RayTransmittance<M>,
-        J: IntegratorJob<C>;
+    ) -> J::Output;
 
-    fn by_look_ups<'s, M, P, C, J>(
+    fn by_look_ups<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> Result<J::Output, Failure>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> Result<J::Output, Failure> {
         let shadow = self.transport().shadow.by_look_ups(unlawful);
         let shadow = shadow.ok_or_else(|| needs_closed_form("estimator.kind: regular"))?;
         Ok(self.with(volume, stage, shadow, job))
     }
 
-    fn by_closed_form<'s, M, P, C, J>(
+    fn by_closed_form<'s, M: LineThickness, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
         job: J,
-    ) -> J::Output
-    where
-        M: LineThickness,
-        P: PhaseFunction,
-        C: Spectrum,
-        J: IntegratorJob<C>,
-    {
+    ) -> J::Output {
         self.with(volume, stage, self.transport().shadow.by_closed_form(unlawful), job)
     }
 
-    fn with<'s, M, P, C, T, J>(
+    fn with<'s, M: Medium, P: PhaseFunction, C: Spectrum, T: RayTransmittance<M>, J: IntegratorJob<C>>(
         &'s self,
         volume: &'s Volume<M, P, C>,
         stage: Stage<'s, C>,
         shadow: T,
         job: J,
-    ) -> J::Output
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        T: RayTransmittance<M>,
-        J: IntegratorJob<C>,
-    {
+    ) -> J::Output {
         let Stage { lights, surfaces, .. } = stage;
         if M::IS_EMPTY {
             // A scene with neither is a rare one, and needs no code of its own.
-            self.run(World { volume, surfaces, lights }, stage, shadow, job)
+            self.run(World::new(volume, surfaces, lights), stage, shadow, job)
         } else if Geometry::surfaces(surfaces).is_empty() {
-            self.run(World { volume, surfaces: &NoSurfaces, lights }, stage, shadow, job)
+            self.run(World::new(volume, &NoSurfaces, lights), stage, shadow, job)
         } else {
-            self.run(World { volume, surfaces, lights }, stage, shadow, job)
+            self.run(World::new(volume, surfaces, lights), stage, shadow, job)
         }
     }
 }
@@ -253,21 +227,13 @@ impl AmongSurfaces for PathTracerPlan {
     fn transport(&self) -> &TransportPlan {
         &self.transport
     }
-    fn run<'s, G, M, P, C, T, J>(
+    fn run<'s, W: Types<Sampling = SpaceSampling<'s>>, J: IntegratorJob<W::Spectrum>>(
         &'s self,
-        world: World<'s, G, M, P, C>,
-        _stage: Stage<'s, C>,
-        shadow: T,
+        world: World<'s, W>,
+        _stage: Stage<'s, W::Spectrum>,
+        shadow: W::Shadow,
         job: J,
-    ) -> J::Output
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        T: RayTransmittance<M>,
-        J: IntegratorJob<C>,
-    {
+    ) -> J::Output {
         let TransportPlan { walk, heuristic, .. } = &self.transport;
         let tracer = PathTracer::new(world, walk.walk(), shadow, *heuristic);
         job.run(tracer.with_max_vertices(self.max_vertices))
@@ -278,21 +244,13 @@ impl AmongSurfaces for VplPlan {
     fn transport(&self) -> &TransportPlan {
         &self.transport
     }
-    fn run<'s, G, M, P, C, T, J>(
+    fn run<'s, W: Types<Sampling = SpaceSampling<'s>>, J: IntegratorJob<W::Spectrum>>(
         &'s self,
-        world: World<'s, G, M, P, C>,
-        stage: Stage<'s, C>,
-        shadow: T,
+        world: World<'s, W>,
+        stage: Stage<'s, W::Spectrum>,
+        shadow: W::Shadow,
         job: J,
-    ) -> J::Output
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        T: RayTransmittance<M>,
-        J: IntegratorJob<C>,
-    {
+    ) -> J::Output {
         let TransportPlan { walk, heuristic, .. } = &self.transport;
         let (component, term) = match self.component {
             ComponentSpec::All => (Component::All, Term::Bounded(stage.bound)),
@@ -322,22 +280,14 @@ enum AnyCorrection<'m> {
     Compensation(Compensation<'m>),
 }
 
-impl<C: Spectrum> Correction<C> for AnyCorrection<'_> {
-    fn recover<G, M, P, R, T, S>(
+impl<W: Types> Correction<W> for AnyCorrection<'_> {
+    fn recover(
         &mut self,
-        gather: &mut Gather<'_, G, M, P, C, R, T>,
+        gather: &mut Gather<'_, W>,
         y: &Vertex,
         which: Connected,
-        source: &mut S,
-    ) -> C
-    where
-        G: Geometry<C>,
-        M: Medium,
-        P: PhaseFunction,
-        R: SamplingExtinction,
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
         match self {
             Self::None => Uncorrected.recover(gather, y, which, source),
             Self::Compensation(compensation) => compensation.recover(gather, y, which, source),
@@ -345,20 +295,13 @@ impl<C: Spectrum> Correction<C> for AnyCorrection<'_> {
     }
 }
 
-impl<G, M, P, C, T> TileIntegrator<C> for PathTracer<'_, G, M, P, C, SpaceSampling<'_>, T>
-where
-    Self: Integrator<C>,
-{
+impl<W: Types> TileIntegrator<W::Spectrum> for PathTracer<'_, W> {
     fn truncated(&self) -> u64 {
         Self::truncated(self)
     }
 }
 
-impl<G, M, P, C, T> TileIntegrator<C>
-    for VplIntegrator<'_, G, M, P, C, SpaceSampling<'_>, T, AnyCorrection<'_>>
-where
-    Self: Integrator<C>,
-{
+impl<W: Types> TileIntegrator<W::Spectrum> for VplIntegrator<'_, W, AnyCorrection<'_>> {
     fn truncated(&self) -> u64 {
         Self::truncated(self)
     }

@@ -102,16 +102,11 @@ impl WalkPlan {
     ///
     /// # Errors
     /// If they have none, and the spec does not allow that.
-    pub fn check_growth<M, P, C>(
+    pub fn check_growth<M: Medium, P: PhaseFunction, C: Spectrum>(
         &self,
         volume: &Volume<M, P, C>,
         seed: u64,
-    ) -> Result<Option<String>, Failure>
-    where
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-    {
+    ) -> Result<Option<String>, Failure> {
         if grows_nowhere(volume, &self.walk()) {
             return Ok(None);
         }

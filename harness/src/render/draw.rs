@@ -307,7 +307,7 @@ mod tests {
     struct Shows(f64);
 
     impl Integrator<f64> for Shows {
-        fn radiance<S: UniformSource + ?Sized>(&mut self, _line: &Line, source: &mut S) -> f64 {
+        fn radiance(&mut self, _line: &Line, source: &mut impl UniformSource) -> f64 {
             self.0 + 1e-3 * (source.next_uniform() - 0.5)
         }
     }

@@ -2,11 +2,11 @@
 
 use super::canvas::Spent;
 use super::draw::Draw;
-use crate::plan::VplPlan;
+use crate::plan::{SpaceSampling, VplPlan};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::Medium;
-use fairflight_paths::transport::World;
+use fairflight_paths::transport::{MadeOf, World};
 use fairflight_scene::{Geometry, NoSurfaces, Spectrum};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_vpl::{Emitters, KeepNear, Ledger, LightPaths, Vpl};
@@ -72,7 +72,8 @@ impl<C: Spectrum> Draw<'_, C> {
         pass: usize,
     ) -> Result<(Batch<C>, Spent), Failure> {
         let volume = self.volume(medium);
-        let world = World { volume: &volume, surfaces, lights: &self.radiant.lights };
+        let world =
+            World::<MadeOf<_, _, _, _, SpaceSampling<'_>>>::new(&volume, surfaces, &self.radiant.lights);
         let observer = self.plan.camera.origin();
         let emitters = Emitters::new(&self.radiant.lights, surfaces, world.enclosing_ball(), observer);
         let bound = plan.bound(self.radiant, &self.plan.phase, emitters.power().max_channel())?;
@@ -114,7 +115,8 @@ impl<C: Spectrum> Draw<'_, C> {
             interrupt::check()?;
             let clock = ThreadTime::now();
             let volume = self.volume(medium);
-            let world = World { volume: &volume, surfaces, lights: &self.radiant.lights };
+            let world =
+                World::<MadeOf<_, _, _, _, SpaceSampling<'_>>>::new(&volume, surfaces, &self.radiant.lights);
             let tracer = LightPaths::new(world, emitters, plan.transport.walk.walk()).keeping_near(keep_near);
             let mut source = Seeded::for_batch(stream, u64::from(index));
             let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());

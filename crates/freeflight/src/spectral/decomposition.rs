@@ -74,14 +74,11 @@ impl<C: InvertOpticalThickness, R: InvertOpticalThickness> DecompositionTracking
     }
 }
 
-impl<F, C, R> FreeFlight<F> for DecompositionTracking<C, R>
-where
-    F: Extinction,
-    C: InvertOpticalThickness,
-    R: InvertOpticalThickness,
+impl<F: Extinction, C: InvertOpticalThickness, R: InvertOpticalThickness> FreeFlight<F>
+    for DecompositionTracking<C, R>
 {
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         let control = self.control.invert(0.0, source.next_exponential());
         let end = control.unwrap_or(f64::INFINITY);
@@ -120,11 +117,8 @@ where
     }
 }
 
-impl<F, C, R> ClosedForm<F> for DecompositionTracking<C, R>
-where
-    F: Extinction,
-    C: InvertOpticalThickness,
-    R: InvertOpticalThickness,
+impl<F: Extinction, C: InvertOpticalThickness, R: InvertOpticalThickness> ClosedForm<F>
+    for DecompositionTracking<C, R>
 {
     fn collided(
         &self,

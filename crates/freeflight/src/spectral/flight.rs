@@ -56,16 +56,16 @@ pub trait SpectralFreeFlight<F: SpectralExtinction<N>, const N: usize> {
     /// Draws one flight of a path that came with the weights `incoming`, not all 0; they multiply the law. A sampler that
     /// decides by the whole path (the average scheme, the hero wavelength) decides by them, so that its bound is one of the
     /// path and not one per flight.
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &F,
         incoming: [f64; N],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<N>;
 
     /// Draws one flight from the start of the profile, of a path that begins here.
     #[inline]
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> SpectralFlight<N> {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> SpectralFlight<N> {
         self.sample_from(field, [1.0; N], source)
     }
 
@@ -73,17 +73,13 @@ pub trait SpectralFreeFlight<F: SpectralExtinction<N>, const N: usize> {
     fn admits(&self, field: &F, s: f64, sigma_t: &[f64; N]) -> bool;
 }
 
-impl<F, E, const N: usize> SpectralFreeFlight<F, N> for &E
-where
-    F: SpectralExtinction<N>,
-    E: SpectralFreeFlight<F, N>,
-{
+impl<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usize> SpectralFreeFlight<F, N> for &E {
     #[inline]
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &F,
         incoming: [f64; N],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<N> {
         (**self).sample_from(field, incoming, source)
     }
@@ -119,7 +115,7 @@ pub(super) fn centred<const N: usize>(weights: [f64; N]) -> ([f64; N], f64) {
 
 /// The index l with probability |w_l|/Σ|w|, from one variate.
 #[inline]
-pub(super) fn pick<const N: usize, S: UniformSource + ?Sized>(weights: &[f64; N], source: &mut S) -> usize {
+pub(super) fn pick<const N: usize>(weights: &[f64; N], source: &mut impl UniformSource) -> usize {
     let mut left = source.next_uniform() * magnitude(weights);
     let mut last = 0;
     for (l, weight) in weights.iter().enumerate() {

@@ -49,17 +49,15 @@ impl<R: InvertOpticalThickness> HeroWavelength<R> {
     }
 }
 
-impl<F, R, const N: usize> SpectralFreeFlight<F, N> for HeroWavelength<R>
-where
-    F: SpectralExtinction<N>,
-    R: InvertOpticalThickness,
+impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> SpectralFreeFlight<F, N>
+    for HeroWavelength<R>
 {
     #[inline]
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &F,
         incoming: [f64; N],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.majorant.length(), "prepared for another profile");
         let (mut weights, unit) = centred(incoming);
@@ -119,17 +117,17 @@ pub(super) fn mean_of_escapes<F: Extinction>(
 }
 
 /// The moments of the number of look-ups, where each wavelength is as likely to decide: the mean of those of N walks.
-pub(super) fn lookups_of_a_mixture<F, C, R, const N: usize>(
+pub(super) fn lookups_of_a_mixture<
+    F: SpectralExtinction<N> + Copy,
+    C: Extinction,
+    R: Extinction,
+    const N: usize,
+>(
     quadrature: &mut RayQuadrature<Wavelength<F, N>>,
     tolerance: Tolerance,
     control: &C,
     sampling: &R,
-) -> [f64; HIGHEST_MOMENT]
-where
-    F: SpectralExtinction<N> + Copy,
-    C: Extinction,
-    R: Extinction,
-{
+) -> [f64; HIGHEST_MOMENT] {
     let field = *quadrature.field();
     let mut mean = [0.0; HIGHEST_MOMENT];
     for hero in 0..N {
@@ -145,10 +143,8 @@ where
     mean
 }
 
-impl<F, R, const N: usize> ClosedForm<Wavelength<F, N>> for HeroWavelength<R>
-where
-    F: SpectralExtinction<N> + Copy,
-    R: InvertOpticalThickness,
+impl<F: SpectralExtinction<N> + Copy, R: InvertOpticalThickness, const N: usize> ClosedForm<Wavelength<F, N>>
+    for HeroWavelength<R>
 {
     fn collided(
         &self,

@@ -35,36 +35,35 @@ impl<R: InvertOpticalThickness, const N: usize> SeparateSolve<R, N> {
     }
 
     /// A flight for each wavelength, independent of each other.
-    pub fn sample_each<F, S>(&self, field: &F, source: &mut S) -> [Flight; N]
-    where
-        F: SpectralExtinction<N>,
-        S: UniformSource + ?Sized,
-    {
+    pub fn sample_each<F: SpectralExtinction<N>>(
+        &self,
+        field: &F,
+        source: &mut impl UniformSource,
+    ) -> [Flight; N] {
         std::array::from_fn(|l| self.sample_one(field, l, source))
     }
 
     #[inline]
-    fn sample_one<F, S>(&self, field: &F, wavelength: usize, source: &mut S) -> Flight
-    where
-        F: SpectralExtinction<N>,
-        S: UniformSource + ?Sized,
-    {
+    fn sample_one<F: SpectralExtinction<N>>(
+        &self,
+        field: &F,
+        wavelength: usize,
+        source: &mut impl UniformSource,
+    ) -> Flight {
         let field = Wavelength::new(field, wavelength).expect("an index below N");
         self.flights[wavelength].sample(&field, source)
     }
 }
 
-impl<F, R, const N: usize> SpectralFreeFlight<F, N> for SeparateSolve<R, N>
-where
-    F: SpectralExtinction<N>,
-    R: InvertOpticalThickness,
+impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> SpectralFreeFlight<F, N>
+    for SeparateSolve<R, N>
 {
     #[inline]
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &F,
         incoming: [f64; N],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<N> {
         let drawn = pick(&incoming, source);
         let mut weights = [0.0; N];
@@ -87,10 +86,8 @@ fn multiplicity<const N: usize>() -> [f64; HIGHEST_MOMENT] {
     std::array::from_fn(|i| (N as f64).powi(i as i32))
 }
 
-impl<F, R, const N: usize> ClosedForm<Wavelength<F, N>> for SeparateSolve<R, N>
-where
-    F: SpectralExtinction<N> + Copy,
-    R: InvertOpticalThickness,
+impl<F: SpectralExtinction<N> + Copy, R: InvertOpticalThickness, const N: usize> ClosedForm<Wavelength<F, N>>
+    for SeparateSolve<R, N>
 {
     fn collided(
         &self,

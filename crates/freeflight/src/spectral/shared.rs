@@ -33,17 +33,15 @@ impl<R: InvertOpticalThickness> SharedDistance<R> {
     }
 }
 
-impl<F, R, const N: usize> SpectralFreeFlight<F, N> for SharedDistance<R>
-where
-    F: SpectralOpticalThickness<N>,
-    R: InvertOpticalThickness,
+impl<F: SpectralOpticalThickness<N>, R: InvertOpticalThickness, const N: usize> SpectralFreeFlight<F, N>
+    for SharedDistance<R>
 {
     #[inline]
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &F,
         incoming: [f64; N],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         // T_l/exp(−∫ σ_samp) up to s as one exponential: neither of the two need be a number by itself.
@@ -80,10 +78,8 @@ fn growth(sigma_t: f64, sampling: f64) -> [f64; HIGHEST_MOMENT] {
     std::array::from_fn(|i| i as f64 * sampling - (i + 1) as f64 * sigma_t)
 }
 
-impl<F, R, const N: usize> ClosedForm<Wavelength<F, N>> for SharedDistance<R>
-where
-    F: SpectralExtinction<N>,
-    R: InvertOpticalThickness,
+impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> ClosedForm<Wavelength<F, N>>
+    for SharedDistance<R>
 {
     fn collided(
         &self,

@@ -72,19 +72,20 @@ impl<S: Scheme, R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTr
     }
 }
 
-impl<F, S, R, C, const N: usize> SpectralFreeFlight<F, N> for SpectralTracking<S, R, C>
-where
+impl<
     F: SpectralExtinction<N>,
     S: Scheme,
     R: InvertOpticalThickness,
     C: InvertOpticalThickness,
+    const N: usize,
+> SpectralFreeFlight<F, N> for SpectralTracking<S, R, C>
 {
     #[inline]
-    fn sample_from<U: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &F,
         incoming: [f64; N],
-        source: &mut U,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         let (mut weights, unit) = centred(incoming);

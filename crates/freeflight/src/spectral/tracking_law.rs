@@ -33,13 +33,11 @@ impl<R: InvertOpticalThickness, C: InvertOpticalThickness> SpectralTracking<MaxS
 
     /// Splits the ray where max |r_l| and max |1 − r_l| are not smooth: where a ratio passes 0 or 1, and where two are as far from
     /// either: r_i = r_j, r_i = −r_j, r_i = 2 − r_j.
-    fn split_at_kinks<F, const N: usize>(
+    fn split_at_kinks<F: SpectralExtinction<N> + Copy, const N: usize>(
         &self,
         quadrature: &mut RayQuadrature<Wavelength<F, N>>,
         tolerance: Tolerance,
-    ) where
-        F: SpectralExtinction<N> + Copy,
-    {
+    ) {
         let spectrum = *quadrature.field().spectrum();
         let mut split = |function: &dyn Fn(&[f64; N]) -> f64| {
             quadrature.split_at_zeros(tolerance, &|s, _| {

@@ -18,11 +18,10 @@ const SPLIT: u64 = 800_000;
 type Tracker<C, R> = Tracking<DoubleParticle, C, R>;
 
 /// The double particle model; the albedo does not enter transmittance.
-fn double_particle<C, R>(control: C, sampling: R) -> Tracker<C, R>
-where
-    C: fairflight_media::OpticalThickness,
-    R: fairflight_media::InvertOpticalThickness,
-{
+fn double_particle<C: fairflight_media::OpticalThickness, R: fairflight_media::InvertOpticalThickness>(
+    control: C,
+    sampling: R,
+) -> Tracker<C, R> {
     Tracking::new(DoubleParticle { albedo: Albedo::default() }, control, sampling)
 }
 

@@ -131,7 +131,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     }
 
     /// A check of the sampler that `build` makes together with the borders of what it knows.
-    fn check<E>(
+    fn check<E: ClosedForm<F>>(
         &self,
         name: &str,
         samples: u64,
@@ -139,7 +139,6 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
         build: impl Fn() -> Result<(E, Vec<f64>), FieldError> + Send + Sync + 'static,
     ) -> Check
     where
-        E: ClosedForm<F>,
         for<'f, 'e> &'e E: FreeFlight<&'f F> + FreeFlight<ObservedFlight<&'f F, &'e E>>,
     {
         let specimen = Arc::clone(&self.specimen);
@@ -154,7 +153,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     }
 }
 
-pub(super) fn examine<F, E>(
+pub(super) fn examine<F: SpecimenField, E: ClosedForm<F>>(
     specimen: &Specimen<F>,
     sampler: &E,
     borders: &[f64],
@@ -162,8 +161,6 @@ pub(super) fn examine<F, E>(
     run: Run,
 ) -> CheckResult
 where
-    F: SpecimenField,
-    E: ClosedForm<F>,
     for<'f, 'e> &'e E: FreeFlight<&'f F> + FreeFlight<ObservedFlight<&'f F, &'e E>>,
 {
     let (mut quadrature, _) = specimen.prepared();

@@ -50,7 +50,7 @@ fn check<P: PointSet>(
                 scores: Scores::Bounded { minimum: 0.0, maximum: 1.0 },
                 ..Reference::exact((-field.optical_thickness(0.0, 2.0)).exp())
             };
-            let estimate = |source: &mut dyn UniformSource| tracking.estimate(&field, source);
+            let estimate = |mut source: &mut dyn UniformSource| tracking.estimate(&field, &mut source);
             match measure(run.seed, run.samples, |source| {
                 let seed = replica_seed(run, source);
                 replica(&set(seed).expect(LAWFUL), POINTS, estimate)
@@ -122,7 +122,7 @@ mod tests {
         let mut quadrature = RayQuadrature::new(&field, &[]);
         let theory = tracking.theory(&mut quadrature, 0.65, Tolerance::TIGHT);
         let independent = theory.relative_central[0] * (-1.3_f64).exp();
-        let estimate = |source: &mut dyn UniformSource| tracking.estimate(&field, source);
+        let estimate = |mut source: &mut dyn UniformSource| tracking.estimate(&field, &mut source);
         for (name, measured) in [
             ("sobol", variance(64, |seed| replica(&Sobol::new(6, seed).unwrap(), 64, estimate))),
             ("halton", variance(64, |seed| replica(&Halton::new(6, seed).unwrap(), 64, estimate))),

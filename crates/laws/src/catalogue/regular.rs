@@ -43,9 +43,8 @@ pub(super) fn checks() -> Vec<Check> {
 }
 
 /// The closed form against quadrature: one estimate is all there is to know.
-fn regular<F>(name: &'static str, field: F) -> Check
+fn regular<F: SpecimenField + OpticalThickness>(name: &'static str, field: F) -> Check
 where
-    F: SpecimenField + OpticalThickness,
     for<'f, 'e> &'e Regular:
         TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e Regular>>,
 {
@@ -64,7 +63,7 @@ struct FirstEstimate {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for FirstEstimate {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut progressive = self.start;
         progressive.estimate(field, source)
     }

@@ -34,9 +34,8 @@ pub(super) struct Specimen<F> {
     quadrature: OnceLock<(RayQuadrature<F>, Truth)>,
 }
 
-impl<F> Specimen<Certified<F>>
+impl<F: Enclosed> Specimen<Certified<F>>
 where
-    F: Enclosed,
     Certified<F>: SpecimenField,
 {
     /// A profile whose optical thickness has a certificate; other integrals are to `tolerance`.
@@ -73,7 +72,7 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// The law of `estimator`, whose own breakpoints are `also`.
-    pub(super) fn examine<'f, E>(
+    pub(super) fn examine<'f, E: ClosedForm<F>>(
         &'f self,
         estimator: &E,
         also: &[f64],
@@ -82,7 +81,6 @@ impl<F: SpecimenField> Specimen<F> {
         run: Run,
     ) -> CheckResult
     where
-        E: ClosedForm<F>,
         for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
     {
         self.examine_with_lookups(estimator, also, scores, |_| lookups, run)
@@ -91,7 +89,7 @@ impl<F: SpecimenField> Specimen<F> {
     /// As [`Self::examine`], with a law of look-ups that is an integral along the field.
     ///
     /// N is at least what the closed moments ask for, so that no seed makes the check untestable.
-    pub(super) fn examine_with_lookups<'f, E>(
+    pub(super) fn examine_with_lookups<'f, E: ClosedForm<F>>(
         &'f self,
         estimator: &E,
         also: &[f64],
@@ -100,7 +98,6 @@ impl<F: SpecimenField> Specimen<F> {
         run: Run,
     ) -> CheckResult
     where
-        E: ClosedForm<F>,
         for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
     {
         let (mut quadrature, truth) = self.prepared();
@@ -152,7 +149,7 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// The law of a biased `estimator`: the expectation that its theory states. Its bias is told.
-    pub(super) fn baseline<'f, E>(
+    pub(super) fn baseline<'f, E: ClosedForm<F>>(
         &'f self,
         estimator: &E,
         scores: impl Fn(Unit) -> Scores,
@@ -160,7 +157,6 @@ impl<F: SpecimenField> Specimen<F> {
         run: Run,
     ) -> CheckResult
     where
-        E: ClosedForm<F>,
         for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
     {
         let (mut quadrature, truth) = self.prepared();

@@ -115,11 +115,10 @@ where
         self.check("shared_distance", Weights::Any, SharedDistance::new(self.constant(sampling)))
     }
 
-    fn check<E>(&self, name: &str, weights: Weights, sampler: E) -> Check
+    fn check<E: Send + Sync + 'static>(&self, name: &str, weights: Weights, sampler: E) -> Check
     where
         for<'f> E: ClosedForm<Wavelength<&'f F, N>> + SpectralFreeFlight<F, N>,
         for<'f> E: SpectralFreeFlight<ObservedSpectrum<'f, F, E>, N>,
-        E: Send + Sync + 'static,
     {
         let field = Arc::clone(&self.field);
         let id = format!("spectral/{}/{name}", self.name);
@@ -134,9 +133,14 @@ where
 }
 
 /// The flights of one wavelength, at its share of the false alarm and with variates of its own.
-fn one_wavelength<F, E>(field: &F, sampler: &E, wavelength: usize, weights: Weights, run: Run) -> CheckResult
+fn one_wavelength<F: SpectralBreakpoints<N>, E>(
+    field: &F,
+    sampler: &E,
+    wavelength: usize,
+    weights: Weights,
+    run: Run,
+) -> CheckResult
 where
-    F: SpectralBreakpoints<N>,
     for<'f> E: ClosedForm<Wavelength<&'f F, N>> + SpectralFreeFlight<F, N>,
     for<'f> E: SpectralFreeFlight<ObservedSpectrum<'f, F, E>, N>,
 {

@@ -37,11 +37,7 @@ const VARIATES: u32 = 1000;
 /// where the profile has no such place: the greatest deviation of τ, relative to 1 + the depth asked for.
 ///
 /// Rounding of s moves τ by σ_t times that; `majorant` · length bounds what is granted for it.
-pub fn deviation_of_inverse<F, E>(field: &F, sampler: &E) -> f64
-where
-    F: OpticalThickness + Majorant,
-    E: FreeFlight<F>,
-{
+pub fn deviation_of_inverse<F: OpticalThickness + Majorant, E: FreeFlight<F>>(field: &F, sampler: &E) -> f64 {
     let (length, total) = (field.length(), field.optical_thickness(0.0, field.length()));
     let at = |i: u32| {
         let u = (f64::from(i) + 0.5) / f64::from(VARIATES);
@@ -91,7 +87,7 @@ mod tests {
         }
     }
     impl FreeFlight<PiecewiseLinear> for Off {
-        fn sample<S: UniformSource + ?Sized>(&self, field: &PiecewiseLinear, source: &mut S) -> Flight {
+        fn sample(&self, field: &PiecewiseLinear, source: &mut impl UniformSource) -> Flight {
             let depth = self.1 * source.next_exponential();
             match field.invert(0.0, depth) {
                 Some(distance) => Flight::Collided { distance, weight: 1.0 },

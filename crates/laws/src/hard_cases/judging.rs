@@ -12,10 +12,13 @@ use fairflight_media::{
 use fairflight_transmittance::{ClosedForm, Tracking};
 
 /// The law of a walk on a profile with a closed form.
-pub(super) fn judge_walk<F, M, C, R>(field: &F, estimator: &Tracking<M, C, R>, run: Run) -> Outcome
+pub(super) fn judge_walk<F, M: CollisionModel, C, R>(
+    field: &F,
+    estimator: &Tracking<M, C, R>,
+    run: Run,
+) -> Outcome
 where
     F: OpticalThickness + Breakpoints + Majorant + Minorant,
-    M: CollisionModel,
     C: OpticalThickness + Breakpoints + Ranged,
     R: InvertOpticalThickness + Breakpoints + Ranged,
 {

@@ -26,10 +26,7 @@ fn constant(sigma_t: f64, length: f64) -> Constant {
 
 /// The weights of a path in a rod between walls of radiance 1, albedo 1, that flies back at each collision: radiance 1 for
 /// each channel.
-fn furnace<E>(sampler: impl Fn(f64) -> E, source: &mut Seeded) -> [f64; 3]
-where
-    E: SpectralFreeFlight<Clear, 3>,
-{
+fn furnace<E: SpectralFreeFlight<Clear, 3>>(sampler: impl Fn(f64) -> E, source: &mut Seeded) -> [f64; 3] {
     const LENGTH: f64 = 1.5;
     let (mut weights, mut ahead) = ([1.0; 3], LENGTH);
     loop {

@@ -19,17 +19,12 @@ use fairflight_transmittance::Regular;
 ///
 /// # Errors
 /// If an estimate is no number.
-pub fn check<M, P, R>(
+pub fn check<M: LineThickness, P: PhaseFunction, R: SamplingExtinction + Copy>(
     scene: &Scene<M, P, f64>,
     walk: &Walk<R>,
     photons_per_sample: u32,
     run: Run,
-) -> Result<CheckResult, NotFinite>
-where
-    M: LineThickness,
-    P: PhaseFunction,
-    R: SamplingExtinction + Copy,
-{
+) -> Result<CheckResult, NotFinite> {
     let Scene { camera, volume, lights } = scene;
     let mut tracer = ParticleTracer::new(volume, lights, *walk);
     let mut photons = PhotonTracer::new(camera, volume, lights, *walk);

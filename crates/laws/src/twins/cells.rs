@@ -13,7 +13,7 @@ use fairflight_transmittance::{JitteredRatio, TransmittanceEstimator};
 struct ContinuesTooRarely;
 
 impl<F: Majorant> TransmittanceEstimator<F> for ContinuesTooRarely {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let strata = (field.majorant() * field.length()).ceil();
         let width = field.length() / strata;
         let mut estimate = 1.0;
@@ -42,7 +42,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for ContinuesTooRarely {
 struct WithoutSurvivalTest;
 
 impl<F: Majorant> FreeFlight<F> for WithoutSurvivalTest {
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let strata = (field.majorant() * field.length()).ceil();
         let width = field.length() / strata;
         for i in 0..strata as u32 {

@@ -26,7 +26,7 @@ impl CollisionModel for WrongWeight {
     fn transmitted(&self, r: f64) -> Branch {
         right().transmitted(r)
     }
-    fn transmit<S: UniformSource + ?Sized>(&self, r: f64, _source: &mut S) -> Option<f64> {
+    fn transmit(&self, r: f64, _source: &mut impl UniformSource) -> Option<f64> {
         Some((self.0)(r)) // right: Some(1 − r)
     }
 }
@@ -38,7 +38,7 @@ struct StopsBelowZero {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for StopsBelowZero {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         use fairflight_media::InvertOpticalThickness;
         let mut weight = SignedProduct::ONE;
         let mut s = 0.0;

@@ -60,7 +60,7 @@ fn averaged_over_pivots(x: &[f64], roulette: Roulette, means_of: fn(&[f64], &mut
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for Wrong {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let order = (self.order)(self.roulette.going_on(), &mut || source.next_uniform());
         let x: Vec<f64> =
@@ -144,7 +144,7 @@ struct ShiftedByALength {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for ShiftedByALength {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (length, step) = (field.length(), field.length() / f64::from(self.teeth));
         let order = right_order(Roulette::KETTUNEN.going_on(), &mut || source.next_uniform());
         let mut thickness = || {
@@ -167,7 +167,7 @@ struct EvenHalfOnly {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for EvenHalfOnly {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (mut level, mut probability) = (0, self.level_ratio);
         while source.next_uniform() >= self.level_ratio {
             level += 1;

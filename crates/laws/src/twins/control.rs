@@ -39,7 +39,7 @@ struct FitsItsOwnWalk {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for FitsItsOwnWalk {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut points = vec![0.0];
         while let Some(s) = self.sampling.invert(points[points.len() - 1], source.next_exponential()) {
             points.push(s);

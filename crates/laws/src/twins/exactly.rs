@@ -20,7 +20,7 @@ fn tent() -> PiecewiseLinear {
 struct Early;
 
 impl<F: OpticalThickness> FreeFlight<F> for Early {
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         match Newton.sample(field, source) {
             // Right: the number nearest to the root.
             Flight::Collided { distance, weight } => {
@@ -126,7 +126,7 @@ pub(super) fn twins() -> Vec<Twin> {
     ]
 }
 
-fn delta<S: UniformSource>(field: &Bounded<Constant>, source: &mut S) -> f64 {
+fn delta(field: &Bounded<Constant>, source: &mut impl UniformSource) -> f64 {
     use fairflight_transmittance::{NextFlight, NextFlightVersion, TransmittanceEstimator};
     NextFlight::new(NextFlightVersion::Delta).estimate(field, source)
 }

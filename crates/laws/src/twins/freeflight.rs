@@ -15,7 +15,7 @@ use fairflight_sources::{Scripted, UniformSource};
 struct PreviousCell(PiecewiseConstant);
 
 impl<F: Extinction> FreeFlight<F> for PreviousCell {
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let mut s = 0.0;
         while let Some(next) = self.0.invert(s, source.next_exponential()) {
             let majorant = self.0.sigma_t(s); // right: after s = next
@@ -35,7 +35,7 @@ impl<F: Extinction> FreeFlight<F> for PreviousCell {
 struct CollidesAsPrinted(Constant);
 
 impl<F: Extinction> FreeFlight<F> for CollidesAsPrinted {
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let mut s = 0.0;
         while let Some(next) = self.0.invert(s, source.next_exponential()) {
             s = next;
@@ -60,7 +60,7 @@ struct WithoutEnergy {
 }
 
 impl<F: Extinction> FreeFlight<F> for WithoutEnergy {
-    fn sample<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> Flight {
+    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let [scattered, transmitted] = self.taken_for;
         let (mut weight, mut s) = (1.0, 0.0);
         while let Some(next) = self.sampling.invert(s, source.next_exponential()) {
@@ -81,19 +81,18 @@ impl<F: Extinction> FreeFlight<F> for WithoutEnergy {
 }
 
 /// Judges `twin` by the law and the closed forms of its sibling `right`; the z is that of the score `shows`.
-pub(super) fn judged<F, E, T>(
+pub(super) fn judged<
+    F: Extinction + Breakpoints,
+    E: for<'f> ClosedForm<&'f F>,
+    T: for<'f> FreeFlight<&'f F>,
+>(
     field: &F,
     (right, also): (&E, &[f64]),
     weights: Weights,
     twin: &T,
     shows: &str,
     run: Run,
-) -> Rejection
-where
-    F: Extinction + Breakpoints,
-    E: for<'f> ClosedForm<&'f F>,
-    T: for<'f> FreeFlight<&'f F>,
-{
+) -> Rejection {
     let mut quadrature = RayQuadrature::new(field, also);
     let expected = FlightExpectation::new(&mut quadrature, right, weights, Tolerance::TIGHT);
     match check_flights(field, twin, &expected, run) {

@@ -15,7 +15,7 @@ struct WrongFirstStep {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for WrongFirstStep {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let field = Bounded::new(field, self.majorant).expect(LAWFUL);
         let p_volume = -(-field.majorant() * field.length()).exp_m1();
         let n = f64::from(self.splits);
@@ -33,7 +33,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for WrongFirstStep {
 }
 
 /// 1 if a flight with this first step escapes.
-fn flight<F: Majorant, S: UniformSource + ?Sized>(field: &F, first: f64, source: &mut S) -> f64 {
+fn flight<F: Majorant>(field: &F, first: f64, source: &mut impl UniformSource) -> f64 {
     let s = first / field.majorant();
     if s >= field.length() {
         return 1.0;

@@ -12,7 +12,7 @@ use fairflight_transmittance::{TransmittanceEstimator, Woodcock};
 struct TooLow(f64);
 
 impl<F: Extinction> TransmittanceEstimator<F> for TooLow {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let claimed = Bounded::new(field, self.0).expect(LAWFUL); // right: a value that sigma_t nowhere exceeds
         Woodcock.estimate(&claimed, source)
     }

@@ -48,7 +48,7 @@ fn tried(estimate: impl FnMut(&mut Seeded) -> f64, right: &Reference, derived: f
 struct WeightBehind(Tracked<DoubleParticle>);
 
 impl<M: Medium> Primary<M> for WeightBehind {
-    fn trace<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) {
+    fn trace(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) {
         self.0.trace(ray, source);
     }
     fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64 {
@@ -202,7 +202,7 @@ struct StratifiesEveryStep {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for StratifiesEveryStep {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let p_volume = -(-self.majorant * field.length()).exp_m1();
         let n = f64::from(self.splits);
         let shift = source.next_uniform();

@@ -24,7 +24,7 @@ struct CappedOrder {
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for CappedOrder {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut term = (-self.pivot).exp();
         let mut sum = term;
         for k in 1..=4 {
@@ -44,7 +44,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for CappedOrder {
 struct WithoutTheStart;
 
 impl<F: Majorant> TransmittanceEstimator<F> for WithoutTheStart {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         let (mut sum, mut weight, mut s) = (0.0, 1.0, 0.0); // right: sum = exp(−majorant · length)
         loop {
@@ -67,7 +67,7 @@ struct KnowsTheLookup {
 }
 
 impl<F: Majorant> TransmittanceEstimator<F> for KnowsTheLookup {
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         let (mut weight, mut x, mut rate) = (1.0, 0.0, majorant);
         loop {

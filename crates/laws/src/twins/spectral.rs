@@ -22,11 +22,11 @@ type Spectrum = Scaled<Constant, 2>;
 struct Weighing(fn(f64, f64, f64) -> f64);
 
 impl SpectralFreeFlight<Spectrum, 2> for Weighing {
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &Spectrum,
         incoming: [f64; 2],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<2> {
         let sampling = Constant::new(1.0, field.length()).expect(LAWFUL);
         let (mut weights, mut s) = (incoming, 0.0);
@@ -52,11 +52,11 @@ impl SpectralFreeFlight<Spectrum, 2> for Weighing {
 struct ForgetsTheCollision;
 
 impl SpectralFreeFlight<Spectrum, 2> for ForgetsTheCollision {
-    fn sample_from<S: UniformSource + ?Sized>(
+    fn sample_from(
         &self,
         field: &Spectrum,
         incoming: [f64; 2],
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> SpectralFlight<2> {
         let majorant = Constant::new(1.0, field.length()).expect(LAWFUL);
         let hero = usize::from(source.next_uniform() >= 0.5);
@@ -85,11 +85,12 @@ fn spectrum() -> Spectrum {
 }
 
 /// Judges `twin` by the law and the closed forms of its sibling `right`, in the first wavelength.
-fn judged<E, T>(right: &E, weights: Weights, twin: &T, run: Run) -> Rejection
-where
-    E: for<'f> ClosedForm<Wavelength<&'f Spectrum, 2>>,
-    T: SpectralFreeFlight<Spectrum, 2>,
-{
+fn judged<E: for<'f> ClosedForm<Wavelength<&'f Spectrum, 2>>, T: SpectralFreeFlight<Spectrum, 2>>(
+    right: &E,
+    weights: Weights,
+    twin: &T,
+    run: Run,
+) -> Rejection {
     let field = spectrum();
     let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).expect(LAWFUL), &[]);
     let expected = FlightExpectation::new(&mut quadrature, right, weights, Tolerance::TIGHT);

@@ -12,22 +12,23 @@ use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
 pub(super) const LAWFUL: &str = "the twins' profiles are lawful";
 
 /// The theory of the estimator that a twin stands beside.
-pub(super) fn theory_of<F, E>(field: &F, right: &E, also: &[f64]) -> Theory
-where
-    F: OpticalThickness + Breakpoints,
-    E: for<'f> ClosedForm<&'f F>,
-{
+pub(super) fn theory_of<F: OpticalThickness + Breakpoints, E: for<'f> ClosedForm<&'f F>>(
+    field: &F,
+    right: &E,
+    also: &[f64],
+) -> Theory {
     let tau = field.optical_thickness(0.0, field.length());
     right.theory(&mut RayQuadrature::new(field, also), tau, Tolerance::TIGHT)
 }
 
 /// Judges `twin` by the law and the `theory` of its right sibling. Nothing is said of its scores, so that only the numbers
 /// give it away.
-pub(super) fn judged<F, E>(field: &F, twin: &E, theory: Theory, run: Run) -> Rejection
-where
-    F: OpticalThickness,
-    E: for<'f> TransmittanceEstimator<&'f F>,
-{
+pub(super) fn judged<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
+    field: &F,
+    twin: &E,
+    theory: Theory,
+    run: Run,
+) -> Rejection {
     let truth = Truth::closed_form(field);
     let expected = Expectation { truth, theory, scores: Scores::Unbounded, lookups: LookupLaw::MeanOnly };
     match check_estimates(field, twin, &expected, run) {
@@ -42,11 +43,12 @@ where
 }
 
 /// As [`judged`], for an estimator that scores 0 or 1.
-pub(super) fn judged_as_coin<F, E>(field: &F, twin: &E, theory: Theory, run: Run) -> Rejection
-where
-    F: OpticalThickness,
-    E: for<'f> TransmittanceEstimator<&'f F>,
-{
+pub(super) fn judged_as_coin<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
+    field: &F,
+    twin: &E,
+    theory: Theory,
+    run: Run,
+) -> Rejection {
     let truth = Truth::closed_form(field);
     let scores = crate::scores::woodcock(Unit::of(truth.optical_thickness));
     let expected = Expectation { truth, theory, scores, lookups: LookupLaw::MeanOnly };

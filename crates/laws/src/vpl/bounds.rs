@@ -4,7 +4,7 @@ use super::rooms::{Replica, Room};
 use crate::{CheckResult, Run};
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
 use fairflight_media::{Medium, PhaseFunction};
-use fairflight_paths::transport::{Vertex, World};
+use fairflight_paths::transport::{Types, Vertex, World};
 use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
 use fairflight_scene::Geometry;
 use fairflight_sources::Seeded;
@@ -19,20 +19,13 @@ const ROUNDING: f64 = 1e-12;
 /// radiance where a lamp is there, since either technique may come close to it.
 ///
 /// Unlimited recursion survives with the probability of its weight, and so keeps to the same bound.
-pub fn compensation_at_most<G, M, P, R, T>(
-    world: World<'_, G, M, P, f64>,
-    (walk, shadow): (Walk<R>, T),
+pub fn compensation_at_most<W: Types<Spectrum = f64>>(
+    world: World<'_, W>,
+    (walk, shadow): (Walk<W::Sampling>, W::Shadow),
     (y, bound, steps): (&Vertex, f64, Option<u32>),
     most: f64,
     run: Run,
-) -> CheckResult
-where
-    G: Geometry<f64>,
-    M: Medium,
-    P: PhaseFunction,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-{
+) -> CheckResult {
     let mean = LocalMean::of(&world.volume.medium, &world.volume.bounds, [1; 3], 1);
     let options = CompensationOptions { steps, ..CompensationOptions::EXACT };
     let mut correction = Compensation::new(options, &mean);
@@ -89,22 +82,15 @@ pub fn coincide(
     }
 }
 
-impl<G, M, P> Room<G, M, P>
-where
-    G: Geometry<f64>,
-    M: Medium,
-    P: PhaseFunction,
-{
+impl<G: Geometry<f64>, M: Medium, P: PhaseFunction> Room<G, M, P> {
     /// [`coincide`] for the replicas of two rooms that differ in their types alone, or in what should not matter.
-    pub fn coincides_with<H, N, R, T, U>(
+    pub fn coincides_with<H: Geometry<f64>, N: Medium, R, T, U>(
         &self,
         other: &Room<H, N, P>,
         (ours, theirs): (Replica<R, T>, Replica<R, U>),
         run: Run,
     ) -> CheckResult
     where
-        H: Geometry<f64>,
-        N: Medium,
         R: SamplingExtinction + Copy,
         T: RayTransmittance<M> + Copy,
         U: RayTransmittance<N> + Copy,

@@ -1,10 +1,8 @@
 //! Where the power of light paths goes.
 
 use crate::{NotFinite, Run, measure};
-use fairflight_media::{Medium, PhaseFunction};
-use fairflight_paths::transport::World;
-use fairflight_paths::{SamplingExtinction, Walk};
-use fairflight_scene::Geometry;
+use fairflight_paths::Walk;
+use fairflight_paths::transport::{Types, World};
 use fairflight_stats::{Reference, Verdict, judge};
 use fairflight_vpl::{Emitters, KeepNear, Ledger, LightPaths, Vpl};
 use glam::DVec3;
@@ -13,18 +11,12 @@ use glam::DVec3;
 ///
 /// # Errors
 /// If an estimate is no number.
-pub fn check<G, M, P, R>(
-    world: World<'_, G, M, P, f64>,
-    walk: Walk<R>,
+pub fn check<W: Types<Spectrum = f64>>(
+    world: World<'_, W>,
+    walk: Walk<W::Sampling>,
     power: f64,
     run: Run,
-) -> Result<Verdict, NotFinite>
-where
-    G: Geometry<f64>,
-    M: Medium,
-    P: PhaseFunction,
-    R: SamplingExtinction,
-{
+) -> Result<Verdict, NotFinite> {
     let emitters = Emitters::new(world.lights, world.surfaces, world.enclosing_ball(), DVec3::ZERO);
     let paths = LightPaths::new(world, &emitters, walk);
     let measured = measure(run.seed, run.samples, |source| {
@@ -39,18 +31,12 @@ where
 ///
 /// # Errors
 /// If an estimate is no number.
-pub fn check_scattered<G, M, P, R>(
-    world: World<'_, G, M, P, f64>,
-    (walk, keep_near): (Walk<R>, Option<KeepNear>),
+pub fn check_scattered<W: Types<Spectrum = f64>>(
+    world: World<'_, W>,
+    (walk, keep_near): (Walk<W::Sampling>, Option<KeepNear>),
     (g, expected): (impl Fn(&Vpl<f64>) -> f64, f64),
     run: Run,
-) -> Result<Verdict, NotFinite>
-where
-    G: Geometry<f64>,
-    M: Medium,
-    P: PhaseFunction,
-    R: SamplingExtinction,
-{
+) -> Result<Verdict, NotFinite> {
     let emitters = Emitters::new(world.lights, world.surfaces, world.enclosing_ball(), DVec3::ZERO);
     let paths = LightPaths::new(world, &emitters, walk).keeping_near(keep_near);
     let measured = measure(run.seed, run.samples, |source| {

@@ -3,10 +3,10 @@
 use crate::{NotFinite, Run, measure};
 use fairflight_compensation::Compensation;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Homogeneous, Line, Medium, PhaseFunction};
-use fairflight_paths::transport::{Lobe, Vertex, World};
+use fairflight_media::{Homogeneous, Line, Medium};
+use fairflight_paths::transport::{Lobe, MadeOf, Types, Vertex, World};
 use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
-use fairflight_scene::{Geometry, Lights, Material, Segment, Source, Spectrum, Surfaces, Volume};
+use fairflight_scene::{Geometry, Lights, Material, Segment, Source, Surfaces, Volume};
 use fairflight_sources::UniformSource;
 use fairflight_stats::{Reference, Verdict, judge};
 use fairflight_vpl::{Connected, Correction, Gather, Pairing, Term, Vpl};
@@ -44,13 +44,13 @@ pub struct Local {
 
 impl Local {
     /// What sees these lights by `walk` and `shadow`.
-    pub fn gather<R, T>(
+    pub fn gather<R: SamplingExtinction, T: RayTransmittance<Homogeneous>>(
         &self,
         walk: Walk<R>,
         shadow: T,
-    ) -> Gather<'_, Surfaces<f64>, Homogeneous, HenyeyGreenstein, f64, R, T> {
+    ) -> Gather<'_, MadeOf<f64, Homogeneous, HenyeyGreenstein, Surfaces<f64>, R, T>> {
         Gather {
-            world: World { volume: &self.volume, surfaces: &self.surfaces, lights: &self.lights },
+            world: World::new(&self.volume, &self.surfaces, &self.lights),
             vpls: &self.vpls,
             term: Term::Bounded(self.bound),
             heuristic: Heuristic::Balance,
@@ -63,17 +63,13 @@ impl Local {
     ///
     /// # Errors
     /// If an estimate is no number.
-    pub fn check<R, T>(
+    pub fn check<R: SamplingExtinction, T: RayTransmittance<Homogeneous>>(
         &self,
         (walk, shadow): (Walk<R>, T),
         correction: &Compensation<'_>,
         reference: &Reference,
         run: Run,
-    ) -> Result<Verdict, NotFinite>
-    where
-        R: SamplingExtinction,
-        T: RayTransmittance<Homogeneous>,
-    {
+    ) -> Result<Verdict, NotFinite> {
         let mut gather = self.gather(walk, shadow);
         let mut correction = correction.clone();
         let pairing = correction.pairing();
@@ -235,22 +231,13 @@ fn cosine_at(vertex: &Vertex, direction: DVec3) -> f64 {
 }
 
 /// Connections and correction at one point, once, as [`VplIntegrator`](fairflight_vpl::VplIntegrator) adds them up.
-pub fn estimate<G, M, P, C, R, T, S>(
-    gather: &mut Gather<'_, G, M, P, C, R, T>,
-    correction: &mut impl Correction<C>,
+pub fn estimate<W: Types>(
+    gather: &mut Gather<'_, W>,
+    correction: &mut impl Correction<W>,
     pairing: Pairing,
     y: &Vertex,
-    source: &mut S,
-) -> C
-where
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-    S: UniformSource + ?Sized,
-{
+    source: &mut impl UniformSource,
+) -> W::Spectrum {
     let count = gather.vpls.len();
     let (which, scale) = match pairing {
         Pairing::Every => (Connected::All, 1.0),

@@ -42,23 +42,13 @@ pub struct Replica<R, T> {
     pub shadow: T,
 }
 
-impl<G, M, P> Room<G, M, P>
-where
-    G: Geometry<f64>,
-    M: Medium,
-    P: PhaseFunction,
-{
-    fn world(&self) -> World<'_, G, M, P, f64> {
-        World { volume: &self.volume, surfaces: &self.surfaces, lights: &self.lights }
-    }
-
+impl<G: Geometry<f64>, M: Medium, P: PhaseFunction> Room<G, M, P> {
     /// The mean radiance of each replica.
-    pub(super) fn replicas<R, T>(&self, replica: Replica<R, T>) -> impl FnMut(&mut Seeded) -> f64
-    where
-        R: SamplingExtinction + Copy,
-        T: RayTransmittance<M> + Copy,
-    {
-        let world = self.world();
+    pub(super) fn replicas<R: SamplingExtinction + Copy, T: RayTransmittance<M> + Copy>(
+        &self,
+        replica: Replica<R, T>,
+    ) -> impl FnMut(&mut Seeded) -> f64 {
+        let world = World::new(&self.volume, &self.surfaces, &self.lights);
         let emitters = Emitters::new(&self.lights, &self.surfaces, world.enclosing_ball(), self.eye.origin);
         let bounds: &Bounds = &self.volume.bounds;
         let mean = LocalMean::of(&self.volume.medium, bounds, [4; 3], 2);
@@ -86,16 +76,12 @@ where
     ///
     /// # Errors
     /// If an estimate is no number.
-    pub fn check<R, T>(
+    pub fn check<R: SamplingExtinction + Copy, T: RayTransmittance<M> + Copy>(
         &self,
         replica: Replica<R, T>,
         reference: &Reference,
         run: Run,
-    ) -> Result<Verdict, NotFinite>
-    where
-        R: SamplingExtinction + Copy,
-        T: RayTransmittance<M> + Copy,
-    {
+    ) -> Result<Verdict, NotFinite> {
         Ok(judge(
             &measure(run.seed, run.samples, self.replicas(replica))?,
             &reference.with_mild_tails(),
@@ -108,17 +94,14 @@ where
     ///
     /// # Errors
     /// If an estimate is no number.
-    pub fn check_against_paths<R, T>(
+    pub fn check_against_paths<R: SamplingExtinction + Copy, T: RayTransmittance<M> + Copy>(
         &self,
         replica: Replica<R, T>,
         paths: u32,
         run: Run,
-    ) -> Result<Verdict, NotFinite>
-    where
-        R: SamplingExtinction + Copy,
-        T: RayTransmittance<M> + Copy,
-    {
-        let mut tracer = PathTracer::new(self.world(), replica.walk, replica.shadow, Heuristic::Balance);
+    ) -> Result<Verdict, NotFinite> {
+        let world = World::new(&self.volume, &self.surfaces, &self.lights);
+        let mut tracer = PathTracer::new(world, replica.walk, replica.shadow, Heuristic::Balance);
         let mut traced = |source: &mut Seeded| tracer.radiance(&self.eye, source);
         let scale = measure(derive_seed(run.seed, 1), run.samples, &mut traced)?.mean().unwrap_or(0.0);
         let mut replicas = self.replicas(replica);

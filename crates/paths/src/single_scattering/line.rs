@@ -32,14 +32,10 @@ impl<'s, M, P, C, T> LineSampled<'s, M, P, C, T> {
     }
 }
 
-impl<M, P, C, T> Integrator<C> for LineSampled<'_, M, P, C, T>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    T: RayTransmittance<M>,
+impl<M: Medium, P: PhaseFunction, C: Spectrum, T: RayTransmittance<M>> Integrator<C>
+    for LineSampled<'_, M, P, C, T>
 {
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
         let Self { volume, lights, shadow, .. } = self;
         let background = lights.background.radiance(line.direction);
         let Some(ray) = volume.enter(line, None) else { return background };

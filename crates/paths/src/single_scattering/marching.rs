@@ -32,7 +32,7 @@ impl<'s, M, P, C> Marching<'s, M, P, C> {
 }
 
 impl<M: Medium, P: PhaseFunction, C: Spectrum> Integrator<C> for Marching<'_, M, P, C> {
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
         let Self { volume, lights, steps, offset, shadow } = self;
         let background = lights.background.radiance(line.direction);
         let Some(ray) = volume.enter(line, None) else { return background };

@@ -68,12 +68,7 @@ pub enum SamplingError {
     NoInteractions,
 }
 
-impl<'s, M, P, C, W, T> SingleScattering<'s, M, P, C, W, T>
-where
-    M: Medium,
-    C: Spectrum,
-    W: Primary<M>,
-{
+impl<'s, M: Medium, P, C: Spectrum, W: Primary<M>, T> SingleScattering<'s, M, P, C, W, T> {
     /// Single scattering in `volume`: transmittance of camera rays by `primary`, of shadow rays by `shadow`, `samples` distances per
     /// ray, light and technique (attenuation apart, whose number is random). `explorers` fit the scattering-driven technique
     /// where `primary` has no control of its own.
@@ -103,13 +98,8 @@ where
     }
 }
 
-impl<M, P, C, W, T> SingleScattering<'_, M, P, C, W, T>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    W: Primary<M>,
-    T: RayTransmittance<M>,
+impl<M: Medium, P: PhaseFunction, C: Spectrum, W: Primary<M>, T: RayTransmittance<M>>
+    SingleScattering<'_, M, P, C, W, T>
 {
     /// σ_t a ρ E at `s`, without both transmittances, and how the point sees the light.
     #[inline]
@@ -127,13 +117,13 @@ where
 
     /// c(s) with the transmittance of the shadow ray: all of the integrand but T(0, s).
     #[inline]
-    fn integrand<S: UniformSource + ?Sized>(
+    fn integrand(
         &mut self,
         ray: &Ray<&M>,
         light: &Source<C>,
         s: f64,
         sigma_t: f64,
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> C {
         let Some((scattered, connection)) = self.scattered(ray, light, s, sigma_t) else { return C::ZERO };
         let shadow = self.volume.towards(ray.world_point(s), &connection);
@@ -152,13 +142,13 @@ where
     }
 
     /// The scores of all samples of one technique; `other` is the one it is combined with.
-    fn technique<S: UniformSource + ?Sized>(
+    fn technique(
         &mut self,
         ray: &Ray<&M>,
         light: &Source<C>,
         technique: Technique,
         other: Option<(Technique, Heuristic)>,
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> C {
         let cauchy = match *light {
             Source::Point { position, .. } => {
@@ -195,12 +185,7 @@ where
     }
 
     /// As many interaction points as samples, chosen in proportion to |score without shadow ray|; each stands for the sum of all.
-    fn resampled<S: UniformSource + ?Sized>(
-        &mut self,
-        ray: &Ray<&M>,
-        light: &Source<C>,
-        source: &mut S,
-    ) -> C {
+    fn resampled(&mut self, ray: &Ray<&M>, light: &Source<C>, source: &mut impl UniformSource) -> C {
         self.candidates.clear();
         let mut total = 0.0;
         for (k, point) in self.primary.interactions().iter().enumerate() {
@@ -232,15 +217,10 @@ where
     }
 }
 
-impl<M, P, C, W, T> Integrator<C> for SingleScattering<'_, M, P, C, W, T>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    W: Primary<M>,
-    T: RayTransmittance<M>,
+impl<M: Medium, P: PhaseFunction, C: Spectrum, W: Primary<M>, T: RayTransmittance<M>> Integrator<C>
+    for SingleScattering<'_, M, P, C, W, T>
 {
-    fn radiance<S: UniformSource + ?Sized>(&mut self, line: &Line, source: &mut S) -> C {
+    fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
         let background = self.lights.background.radiance(line.direction);
         let Some(ray) = self.volume.enter(line, None) else { return background };
         self.primary.trace(&ray, source);

@@ -12,7 +12,7 @@ use fairflight_transmittance::{Explorers, Interaction, Regular, Tracking, Transm
 /// depend on the point i itself, E\[Σ g(s_i, T̂ *before* s_i)\] = ∫ σ_samp(s) E\[g(s, T̂(s))\] ds. The factor of s_i would be a bias.
 pub trait Primary<M> {
     /// Draws the walk.
-    fn trace<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S);
+    fn trace(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource);
 
     /// T̂(0, s) of the walk.
     fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64;
@@ -88,18 +88,14 @@ impl<L: CollisionModel + Copy> Tracked<L> {
         Ok(Self { model, sigma_samp, control, walk: Vec::new() })
     }
 
-    fn draw<F, C, S>(
+    fn draw<F: Extinction, C: OpticalThickness>(
         model: &L,
         control: C,
         sampling: Constant,
         field: &F,
-        source: &mut S,
+        source: &mut impl UniformSource,
         walk: &mut Vec<Interaction>,
-    ) where
-        F: Extinction,
-        C: OpticalThickness,
-        S: UniformSource + ?Sized,
-    {
+    ) {
         TransmittanceFunction::<F>::trace(&Tracking::new(*model, control, sampling), field, source, walk);
     }
 
@@ -110,7 +106,7 @@ impl<L: CollisionModel + Copy> Tracked<L> {
 }
 
 impl<M: Medium, L: CollisionModel + Copy> Primary<M> for Tracked<L> {
-    fn trace<S: UniformSource + ?Sized>(&mut self, ray: &Ray<&M>, source: &mut S) {
+    fn trace(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) {
         self.walk.clear();
         let sampling = Constant::new(self.sigma_samp, ray.length()).expect("checked by the constructor");
         if let Some(control) = &mut self.control {
@@ -139,7 +135,7 @@ impl<M: Medium, L: CollisionModel + Copy> Primary<M> for Tracked<L> {
 
 /// The closed form: no walk, no interaction points.
 impl<M: LineThickness> Primary<M> for Regular {
-    fn trace<S: UniformSource + ?Sized>(&mut self, _ray: &Ray<&M>, _source: &mut S) {}
+    fn trace(&mut self, _ray: &Ray<&M>, _source: &mut impl UniformSource) {}
     #[inline]
     fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64 {
         (-ray.optical_thickness(0.0, s)).exp()

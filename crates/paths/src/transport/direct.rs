@@ -1,8 +1,7 @@
 //! Light that comes straight from an emitter, by two techniques whose weights sum to one.
 
-use super::{Vertex, World};
-use crate::{Heuristic, RayTransmittance};
-use fairflight_media::{Medium, PhaseFunction};
+use super::{Types, Vertex, World};
+use crate::Heuristic;
 use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
@@ -16,13 +15,7 @@ pub struct Scattered {
     pub pdf_solid_angle: f64,
 }
 
-impl<G, M, P, C> World<'_, G, M, P, C>
-where
-    C: Spectrum,
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-{
+impl<W: Types> World<'_, W> {
     /// Next-event estimation: the light of all emitters that `vertex` scatters towards where its path came from, per reflectance or
     /// albedo, weighted against [`emission`](Self::emission) and [`background`](Self::background).
     ///
@@ -37,19 +30,15 @@ where
     /// to help (raab-2008 section 4.1). For emitters of some size the weak singularity is gone: weight/density ≤ 1/density of the
     /// other technique, so that a contribution is at most L_e.
     #[inline(never)]
-    pub fn emitters_at<T, S>(
+    pub fn emitters_at(
         &self,
         heuristic: Heuristic,
         vertex: &Vertex,
-        shadow: &mut T,
-        source: &mut S,
-    ) -> C
-    where
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+        shadow: &mut W::Shadow,
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
         let phase = &self.volume.phase;
-        let mut radiance = C::ZERO;
+        let mut radiance = W::Spectrum::ZERO;
         for light in &self.lights.sources {
             let Some(connection) = light.connect(vertex.position) else { continue };
             let pdf = vertex.pdf_solid_angle(phase, connection.towards);
@@ -98,11 +87,11 @@ where
         heuristic: Heuristic,
         from: Option<&Scattered>,
         direction: DVec3,
-        hit: &Hit<'_, C>,
-    ) -> C {
+        hit: &Hit<'_, W::Spectrum>,
+    ) -> W::Spectrum {
         let emission = hit.surface.emission;
         match from {
-            Some(Scattered { vertex, pdf_solid_angle }) if emission != C::ZERO => {
+            Some(Scattered { vertex, pdf_solid_angle }) if emission != W::Spectrum::ZERO => {
                 let shape = &hit.surface.shape;
                 let is_own = vertex.surface() == Some(hit.index);
                 let pdf =
@@ -115,7 +104,7 @@ where
 
     /// The same for the background, where a path leaves everything.
     #[inline]
-    pub fn background(&self, heuristic: Heuristic, from: Option<&Scattered>, towards: DVec3) -> C {
+    pub fn background(&self, heuristic: Heuristic, from: Option<&Scattered>, towards: DVec3) -> W::Spectrum {
         let background = &self.lights.background;
         let Some(Scattered { pdf_solid_angle, .. }) = from else { return background.radiance(towards) };
         let mut radiance = background.constant;
@@ -132,7 +121,7 @@ mod tests {
     use super::super::Lobe;
     use super::super::fixtures::{Scene, ball, diffuse, hazy, square, vacuum};
     use super::*;
-    use fairflight_media::EmptySpace;
+    use fairflight_media::{EmptySpace, PhaseFunction};
     use fairflight_scene::{EnvironmentMap, Source};
     use fairflight_sources::Scripted;
     use fairflight_transmittance::Regular;

@@ -1,10 +1,12 @@
 //! Small scenes for tests, in which everything can be computed by hand.
 
-use super::World;
+use super::{MadeOf, World};
+use crate::Uniform;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Bounds, EmptySpace, Homogeneous, Line, Medium};
+use fairflight_media::{Bounds, EmptySpace, Homogeneous, Line, LineThickness};
 use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{Background, Lights, Material, Segment, Shape, Source, Surface, Surfaces, Volume};
+use fairflight_transmittance::Regular;
 use glam::{DVec3, dvec3};
 
 /// The parts of a [`World`].
@@ -17,9 +19,12 @@ pub(crate) struct Scene<M> {
 /// Of the medium of [`hazy`].
 pub(crate) const ALBEDO: f64 = 0.5;
 
-impl<M: Medium> Scene<M> {
-    pub(crate) fn world(&self) -> World<'_, Surfaces<f64>, M, HenyeyGreenstein, f64> {
-        World { volume: &self.volume, surfaces: &self.surfaces, lights: &self.lights }
+/// The world of a scene.
+type SceneWorld<'s, M> = World<'s, MadeOf<f64, M, HenyeyGreenstein, Surfaces<f64>, Uniform, Regular>>;
+
+impl<M: LineThickness> Scene<M> {
+    pub(crate) fn world(&self) -> SceneWorld<'_, M> {
+        World::new(&self.volume, &self.surfaces, &self.lights)
     }
 }
 

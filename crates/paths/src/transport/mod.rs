@@ -8,10 +8,12 @@ mod direct;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod trace;
+mod types;
 mod vertex;
 mod world;
 
 pub use direct::Scattered;
 pub use trace::Traced;
+pub use types::{MadeOf, NoShadow, Types};
 pub use vertex::{Lobe, Vertex};
 pub use world::{Event, Passage, World};

@@ -1,8 +1,8 @@
 //! One random path.
 
-use super::{Event, Scattered, World};
-use crate::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
-use fairflight_media::{Line, Medium, PhaseFunction};
+use super::{Event, Scattered, Types, World};
+use crate::{Heuristic, Walk};
+use fairflight_media::Line;
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 
@@ -15,32 +15,21 @@ pub struct Traced<C> {
     pub is_cut: bool,
 }
 
-impl<G, M, P, C> World<'_, G, M, P, C>
-where
-    C: Spectrum,
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-{
+impl<W: Types> World<'_, W> {
     /// The radiance that arrives along a ray, by one path: the loop of [`PathTracer`](crate::PathTracer).
     #[inline(never)]
-    pub fn trace<R, T, S>(
+    pub fn trace(
         &self,
-        walk: &Walk<R>,
+        walk: &Walk<W::Sampling>,
         (heuristic, max_vertices): (Heuristic, u32),
         mut segment: Segment,
-        shadow: &mut T,
-        source: &mut S,
-    ) -> Traced<C>
-    where
-        R: SamplingExtinction,
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+        shadow: &mut W::Shadow,
+        source: &mut impl UniformSource,
+    ) -> Traced<W::Spectrum> {
         let collisions = self.collisions(walk);
         let phase = &self.volume.phase;
-        let mut radiance = C::ZERO;
-        let mut throughput = C::splat(1.0);
+        let mut radiance = W::Spectrum::ZERO;
+        let mut throughput = W::Spectrum::splat(1.0);
         let mut from: Option<Scattered> = None;
         for _ in 0..max_vertices {
             let hit = self.surfaces.intersect(&segment);
@@ -68,7 +57,7 @@ where
                 Event::Absorbed => return Traced { radiance, is_cut: false },
                 Event::Truncated => return Traced { radiance, is_cut: true },
             };
-            let factor: C = factor;
+            let factor: W::Spectrum = factor;
             let lit = self.emitters_at(heuristic, &vertex, shadow, source);
             radiance += throughput * factor * lit;
             let survival = factor.magnitude().min(1.0);
@@ -90,6 +79,7 @@ mod tests {
     use super::*;
     use crate::Uniform;
     use fairflight_collision::Version;
+    use fairflight_media::LineThickness;
     use fairflight_scene::{Material, Source};
     use fairflight_sources::Scripted;
     use fairflight_transmittance::Regular;
@@ -97,10 +87,12 @@ mod tests {
     use std::f64::consts::{FRAC_1_PI, PI};
 
     /// The path that these variates make, all of which it must use.
-    fn trace<M>(scene: &Scene<M>, segment: Segment, max_vertices: u32, script: &[f64]) -> Traced<f64>
-    where
-        M: fairflight_media::LineThickness,
-    {
+    fn trace<M: LineThickness>(
+        scene: &Scene<M>,
+        segment: Segment,
+        max_vertices: u32,
+        script: &[f64],
+    ) -> Traced<f64> {
         let walk = Walk::new(Version::Terminating, Uniform::new(0.5).unwrap());
         let mut source = Scripted::new(script.iter().copied());
         let how = (Heuristic::Balance, max_vertices);

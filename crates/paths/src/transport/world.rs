@@ -1,6 +1,6 @@
 //! A medium among surfaces and lights, and how light travels in it.
 
-use super::{Lobe, Vertex};
+use super::{Lobe, MadeOf, Types, Vertex};
 use crate::walk::Leg;
 use crate::{RayTransmittance, SamplingExtinction, Walk};
 use fairflight_collision::SingleParticle;
@@ -9,25 +9,47 @@ use fairflight_scene::surface::{fresnel_reflectance, reflect, refract};
 use fairflight_scene::{Geometry, Hit, Lights, Material, Segment, Spectrum, Volume};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
+use std::fmt;
 
 /// What paths meet. A scene without surfaces has [`NoSurfaces`](fairflight_scene::NoSurfaces), one without a medium a medium that is
 /// empty by its type: neither compiles to code of the other.
-#[derive(Debug)]
-pub struct World<'s, G, M, P, C> {
+pub struct World<'s, W: Types> {
     /// What scatters on the way.
-    pub volume: &'s Volume<M, P, C>,
+    pub volume: &'s Volume<W::Medium, W::Phase, W::Spectrum>,
     /// What ends the way.
-    pub surfaces: &'s G,
+    pub surfaces: &'s W::Geometry,
     /// What shines, apart from surfaces.
-    pub lights: &'s Lights<C>,
+    pub lights: &'s Lights<W::Spectrum>,
 }
 
-impl<G, M, P, C> Clone for World<'_, G, M, P, C> {
+impl<W: Types> Clone for World<'_, W> {
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<G, M, P, C> Copy for World<'_, G, M, P, C> {}
+impl<W: Types> Copy for World<'_, W> {}
+
+impl<W: Types> fmt::Debug for World<'_, W> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("World").finish_non_exhaustive()
+    }
+}
+
+impl<
+    's,
+    C: Spectrum,
+    M: Medium,
+    P: PhaseFunction,
+    G: Geometry<C>,
+    R: SamplingExtinction,
+    T: RayTransmittance<M>,
+> World<'s, MadeOf<C, M, P, G, R, T>>
+{
+    /// The world of a volume, surfaces and lights; its sampling extinction and transmittance are of the types of what is used in it.
+    pub fn new(volume: &'s Volume<M, P, C>, surfaces: &'s G, lights: &'s Lights<C>) -> Self {
+        Self { volume, surfaces, lights }
+    }
+}
 
 /// Where a particle got to along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,20 +81,14 @@ pub struct Passage {
     pub radiance_scale: f64,
 }
 
-impl<G, M, P, C> World<'_, G, M, P, C>
-where
-    C: Spectrum,
-    G: Geometry<C>,
-    M: Medium,
-    P: PhaseFunction,
-{
+impl<W: Types> World<'_, W> {
     /// A ball that holds medium and surfaces: its center and its radius \[length\]; a point where there is nothing.
     pub fn enclosing_ball(&self) -> (DVec3, f64) {
         let surfaces = self.surfaces.surfaces();
         if surfaces.is_empty() {
             return self.volume.bounds.enclosing_ball();
         }
-        let medium = (!M::IS_EMPTY).then(|| self.volume.bounds.corners());
+        let medium = (!W::Medium::IS_EMPTY).then(|| self.volume.bounds.corners());
         let corners = surfaces.iter().map(|surface| surface.shape.corners()).chain(medium);
         let (min, max) = corners
             .reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
@@ -81,24 +97,20 @@ where
     }
 
     /// The collisions of a walk in this medium, to be handed to [`follow`](Self::follow).
-    pub fn collisions<R: SamplingExtinction>(&self, walk: &Walk<R>) -> (SingleParticle, C) {
+    pub fn collisions(&self, walk: &Walk<W::Sampling>) -> (SingleParticle, W::Spectrum) {
         walk.collisions(self.volume)
     }
 
     /// Follows a particle of energy 1 along a segment, whose end is the nearest surface or whatever else one is interested in.
     // One copy per scene type: inlined into every integrator it is minutes of compilation, and a call costs next to nothing.
     #[inline(never)]
-    pub fn follow<R, S>(
+    pub fn follow(
         &self,
-        walk: &Walk<R>,
-        (model, ratio): &(SingleParticle, C),
+        walk: &Walk<W::Sampling>,
+        (model, ratio): &(SingleParticle, W::Spectrum),
         segment: &Segment,
-        source: &mut S,
-    ) -> Event<C>
-    where
-        R: SamplingExtinction,
-        S: UniformSource + ?Sized,
-    {
+        source: &mut impl UniformSource,
+    ) -> Event<W::Spectrum> {
         let length = segment.length.is_finite().then_some(segment.length);
         let Some(ray) = self.volume.enter(&segment.line, length) else {
             return Event::Passed { weight: 1.0 };
@@ -118,11 +130,12 @@ where
 
     /// An unbiased estimate of the transmittance of a segment \[1\], whatever surfaces lie on it.
     #[inline(never)]
-    pub fn transmittance<T, S>(&self, segment: &Segment, shadow: &mut T, source: &mut S) -> f64
-    where
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+    pub fn transmittance(
+        &self,
+        segment: &Segment,
+        shadow: &mut W::Shadow,
+        source: &mut impl UniformSource,
+    ) -> f64 {
         let length = segment.length.is_finite().then_some(segment.length);
         match self.volume.enter(&segment.line, length) {
             Some(ray) => shadow.estimate(&ray, source),
@@ -132,17 +145,18 @@ where
 
     /// V of raab-2008 eq. 9: 0 if a surface is between the ends, else an unbiased estimate of the transmittance \[1\].
     #[inline]
-    pub fn attenuated_visibility<T, S>(&self, segment: &Segment, shadow: &mut T, source: &mut S) -> f64
-    where
-        T: RayTransmittance<M>,
-        S: UniformSource + ?Sized,
-    {
+    pub fn attenuated_visibility(
+        &self,
+        segment: &Segment,
+        shadow: &mut W::Shadow,
+        source: &mut impl UniformSource,
+    ) -> f64 {
         if self.surfaces.is_occluded(segment) { 0.0 } else { self.transmittance(segment, shadow, source) }
     }
 
     /// The vertex where a ray meets a diffuse surface, and the reflectance; `None` on a smooth one.
     #[inline]
-    pub fn diffuse_vertex(&self, hit: &Hit<'_, C>) -> Option<(Vertex, C)> {
+    pub fn diffuse_vertex(&self, hit: &Hit<'_, W::Spectrum>) -> Option<(Vertex, W::Spectrum)> {
         let Material::Diffuse { reflectance } = hit.surface.material else { return None };
         let lobe = Lobe::Diffuse { normal: hit.normal, surface: hit.index };
         Some((Vertex { position: hit.position, lobe }, reflectance))
@@ -160,11 +174,11 @@ where
     ///
     /// Radiance is compressed by refraction: L/n² is what stays the same along a ray.
     #[inline]
-    pub fn pass<S: UniformSource + ?Sized>(
+    pub fn pass(
         &self,
-        hit: &Hit<'_, C>,
+        hit: &Hit<'_, W::Spectrum>,
         direction: DVec3,
-        source: &mut S,
+        source: &mut impl UniformSource,
     ) -> Option<Passage> {
         let reflected = || Passage { direction: reflect(direction, hit.normal), radiance_scale: 1.0 };
         match hit.surface.material {
@@ -213,7 +227,7 @@ mod tests {
         let (center, radius) = hazy(1.0, floor(), vec![]).world().enclosing_ball();
         assert_eq!((center, radius), (DVec3::ZERO, 300f64.sqrt()));
         let alone = hazy(1.0, vec![], vec![]);
-        let world = World { volume: &alone.volume, surfaces: &NoSurfaces, lights: &alone.lights };
+        let world = World::<MadeOf<_, _, _, _, Uniform>>::new(&alone.volume, &NoSurfaces, &alone.lights);
         assert_eq!(world.enclosing_ball(), alone.volume.bounds.enclosing_ball());
     }
 

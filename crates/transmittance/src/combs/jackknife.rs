@@ -44,7 +44,7 @@ impl Jackknife {
 
 impl<F: Extinction> TransmittanceEstimator<F> for Jackknife {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let [x1, x2] = [(); 2].map(|()| self.comb.thickness(field, &prepared, source.next_uniform()));
         (0.5 * (x1 - x2)).cos() * (-0.5 * (x1 + x2)).exp()

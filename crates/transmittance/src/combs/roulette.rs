@@ -114,7 +114,7 @@ impl Roulette {
     /// (D/2)^k of such orders are not small for a comb of large deviation D. A variate for every decision makes each
     /// probability exact to 2^-53, and costs 0.22 variates more for P = 0.1.
     #[inline]
-    pub fn sample_order<S: UniformSource + ?Sized>(&self, source: &mut S) -> u32 {
+    pub fn sample_order(&self, source: &mut impl UniformSource) -> u32 {
         if source.next_uniform() >= self.going_on {
             return 0;
         }

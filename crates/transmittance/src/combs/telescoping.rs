@@ -150,7 +150,7 @@ fn difference(exponent: f64, half: f64) -> f64 {
 
 impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut level = 0;
         while source.next_uniform() >= self.level_ratio {
             level += 1;

@@ -91,10 +91,10 @@ impl UnbiasedRayMarching {
 
     /// As [`TransmittanceEstimator::estimate`], and shows `earlier` the sample variance of the draws of each segment
     /// that had more than one: k2 of a segment, without bias, at no look-up. For the roulettes of *later* estimates.
-    pub fn estimate_and_observe<F: Extinction, S: UniformSource + ?Sized>(
+    pub fn estimate_and_observe<F: Extinction>(
         &self,
         field: &F,
-        source: &mut S,
+        source: &mut impl UniformSource,
         earlier: &mut RunningCumulant,
     ) -> f64 {
         self.product(field, source, |deviations| earlier.observe(sample_variance(deviations)))
@@ -102,10 +102,10 @@ impl UnbiasedRayMarching {
 
     /// The product over the segments. `observe` sees X_0 − X_i, i = 0 … N, of each segment with N > 0.
     #[inline]
-    fn product<F: Extinction, S: UniformSource + ?Sized>(
+    fn product<F: Extinction>(
         &self,
         field: &F,
-        source: &mut S,
+        source: &mut impl UniformSource,
         mut observe: impl FnMut(&[f64]),
     ) -> f64 {
         let length = field.length();
@@ -135,11 +135,11 @@ impl UnbiasedRayMarching {
     }
 
     /// exp(X_0) times the estimate of a segment, from X_0 and the draws of `order` further combs: as s exp(t), see [`of_draws`].
-    fn series<F: Extinction, S: UniformSource + ?Sized>(
+    fn series<F: Extinction>(
         &self,
         field: &F,
         prepared: &Prepared,
-        source: &mut S,
+        source: &mut impl UniformSource,
         first: f64,
         order: u32,
         observe: &mut impl FnMut(&[f64]),
@@ -164,7 +164,7 @@ fn sample_variance(values: &[f64]) -> f64 {
 
 impl<F: Extinction> TransmittanceEstimator<F> for UnbiasedRayMarching {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         self.product(field, source, |_| ())
     }
 

@@ -220,7 +220,7 @@ fn jittered_cost(depth: f64, index: usize) -> Forecast {
 
 impl<F: Majorant> TransmittanceEstimator<F> for Hybrid {
     #[inline]
-    fn estimate<S: UniformSource + ?Sized>(&self, field: &F, source: &mut S) -> f64 {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         match &self.choice {
             Choice::Marching(estimator) => estimator.estimate(field, source),
             Choice::Jittered(estimator) => estimator.estimate(field, source),

@@ -44,7 +44,7 @@ impl Pilot {
     }
 
     /// Looks at a ray whose majorant is positive. Nothing is allocated.
-    pub fn of<F: Majorant, S: UniformSource + ?Sized>(field: &F, source: &mut S) -> Self {
+    pub fn of<F: Majorant>(field: &F, source: &mut impl UniformSource) -> Self {
         let length = field.length();
         let teeth = teeth_for(field.majorant() * length);
         let spacing = length / f64::from(teeth);
@@ -95,12 +95,7 @@ impl Pilot {
 ///
 /// With Y = h σ_t(x), F = 1 − Y_1 + \[N ≥ 2\] Y_1 Y_2/ε − …, P(N ≥ 2) = ε/2: to second order in Y the variance of a factor is
 /// Var Y + E\[Y_1² Y_2²\]/(2ε), and two look-ups estimate both, (Y_1 − Y_2)²/2 and (Y_1 Y_2)²/(2ε).
-fn jittered<F: Majorant, S: UniformSource + ?Sized>(
-    field: &F,
-    epsilon: f64,
-    pairs: u32,
-    source: &mut S,
-) -> f64 {
+fn jittered<F: Majorant>(field: &F, epsilon: f64, pairs: u32, source: &mut impl UniformSource) -> f64 {
     let strata = (field.majorant() * field.length() / epsilon).ceil().max(1.0);
     let width = field.length() / strata;
     let thickness = field.majorant() * width;

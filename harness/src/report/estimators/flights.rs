@@ -107,10 +107,12 @@ struct Sampled {
 /// The seed ray with its majorant.
 type SeedRay<'a> = Bounded<&'a Ray<Arc<AnalyticCosine>>>;
 
-fn sample<E>(ray: &Ray<Arc<AnalyticCosine>>, sampler: &E, flights: u64, seed: u64) -> Sampled
-where
-    E: for<'a> FreeFlight<SeedRay<'a>> + for<'a> FreeFlight<Counted<SeedRay<'a>>> + Sync,
-{
+fn sample<E: for<'a> FreeFlight<SeedRay<'a>> + for<'a> FreeFlight<Counted<SeedRay<'a>>> + Sync>(
+    ray: &Ray<Arc<AnalyticCosine>>,
+    sampler: &E,
+    flights: u64,
+    seed: u64,
+) -> Sampled {
     let collides = 1.0 - (-ray.optical_thickness(0.0, ray.length())).exp();
     let batches = flights.div_ceil(BATCH);
     let counts = (0..batches)

@@ -128,14 +128,11 @@ where
 }
 
 /// All samplers by name, on one field of majorant 1 for its greatest coefficient.
-fn all<F, const N: usize>(
+fn all<F: SpectralOpticalThickness<N> + Sync, const N: usize>(
     field: &F,
     (thickness, coefficients): ([f64; N], [f64; N]),
     flights: (u64, u64),
-) -> Result<Vec<(&'static str, Scored<N>)>, Failure>
-where
-    F: SpectralOpticalThickness<N> + Sync,
-{
+) -> Result<Vec<(&'static str, Scored<N>)>, Failure> {
     let constant = |sigma: f64| {
         Constant::new(sigma, field.length()).map_err(|error| Failure::refused(format!("spectral: {error}")))
     };

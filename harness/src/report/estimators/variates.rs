@@ -93,9 +93,13 @@ pub(super) fn study(run: &Run<'_>) -> Result<Variates, Failure> {
     let jittered = JitteredRatio::new(0.5).map_err(|error| refuse(&error))?;
     let unit = truth.optical_thickness.exp();
     let estimates: [(&str, &str, &Estimate<'_>); 3] = [
-        ("ratio", "ratio tracking", &|source| unit * ratio.estimate(&field, source)),
-        ("marching", "unbiased ray marching, 25 teeth", &|source| unit * marching.estimate(&field, source)),
-        ("jittered", "jittered ratio tracking, ε = 0.5", &|source| unit * jittered.estimate(&field, source)),
+        ("ratio", "ratio tracking", &|mut source| unit * ratio.estimate(&field, &mut source)),
+        ("marching", "unbiased ray marching, 25 teeth", &|mut source| {
+            unit * marching.estimate(&field, &mut source)
+        }),
+        ("jittered", "jittered ratio tracking, ε = 0.5", &|mut source| {
+            unit * jittered.estimate(&field, &mut source)
+        }),
     ];
     let mut section = Section::new("variates", "Variates from point sets");
     section.text = vec![format!(

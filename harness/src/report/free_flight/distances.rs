@@ -51,15 +51,12 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     Ok(section(&ray, &histograms, flights))
 }
 
-fn histogram<'f, E>(
+fn histogram<'f, E: FreeFlight<&'f Ray<AnalyticCosine>> + FreeFlight<Counted<&'f Ray<AnalyticCosine>>>>(
     run: &Run<'_>,
     name: &str,
     (ray, sampler): (&'f Ray<AnalyticCosine>, &E),
     (flights, index): (u64, u64),
-) -> Histogram
-where
-    E: FreeFlight<&'f Ray<AnalyticCosine>> + FreeFlight<Counted<&'f Ray<AnalyticCosine>>>,
-{
+) -> Histogram {
     let length = ray.length();
     let seed = run.seed(2, index);
     let (mut sums, mut squares) = ([0.0; CELLS], [0.0; CELLS]);

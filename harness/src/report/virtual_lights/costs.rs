@@ -11,8 +11,8 @@ use cpu_time::ThreadTime;
 use fairflight_collision::Version;
 use fairflight_media::phase::Isotropic;
 use fairflight_media::{Medium, Ray};
-use fairflight_paths::transport::{Event, Vertex, World};
-use fairflight_paths::{Heuristic, Ratio, RayTransmittance, SamplingExtinction, Uniform, Walk};
+use fairflight_paths::transport::{Event, Types, Vertex, World};
+use fairflight_paths::{Heuristic, Ratio, RayTransmittance, Uniform, Walk};
 use fairflight_scene::{Geometry, NoSurfaces, Segment, Volume};
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_vpl::{Connected, Emitters, Gather, Ledger, LightPaths, Term, Vpl};
@@ -116,7 +116,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Costs, Failure> {
 struct Clear;
 
 impl<M: Medium> RayTransmittance<M> for Clear {
-    fn estimate<S: UniformSource + ?Sized>(&mut self, _ray: &Ray<&M>, _source: &mut S) -> f64 {
+    fn estimate(&mut self, _ray: &Ray<&M>, _source: &mut impl UniformSource) -> f64 {
         1.0
     }
 }
@@ -132,11 +132,11 @@ fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
         return Err(Failure::refused("the room of the report is gray and full of noise"));
     };
     let volume = Volume { medium: &**medium, bounds: plan.bounds, albedo: radiant.albedo, phase: Isotropic };
-    let world = World { volume: &volume, surfaces: &radiant.surfaces, lights: &radiant.lights };
+    let (surfaces, lights) = (&radiant.surfaces, &radiant.lights);
+    let world = World::new(&volume, surfaces, lights);
     let sampling = Uniform::new(medium.upper_bound().unwrap_or(1.0)).map_err(Failure::refused)?;
     let walk = Walk::new(Version::NonTerminating, sampling);
-    let emitters =
-        Emitters::new(&radiant.lights, &radiant.surfaces, world.enclosing_ball(), plan.camera.origin());
+    let emitters = Emitters::new(lights, surfaces, world.enclosing_ball(), plan.camera.origin());
     let tracer = LightPaths::new(world, &emitters, walk);
     let mut source = Seeded::new(run.seed(81, 1));
     let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());
@@ -161,13 +161,24 @@ fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
                 .extend(hit.as_ref().and_then(|hit| world.diffuse_vertex(hit)).map(|(vertex, _)| vertex)),
         }
     }
-    let empty = World { volume: &volume, surfaces: &NoSurfaces, lights: &radiant.lights };
     let ratio = || Ratio(sampling);
     let mut times: [Vec<f64>; 4] = Default::default();
     for _ in 0..ROUNDS {
-        times[0].push(time(gather(empty, &vpls, walk, Clear), &points, &mut source));
-        times[1].push(time(gather(world, &vpls, walk, Clear), &points, &mut source));
-        times[2].push(time(gather(empty, &vpls, walk, ratio()), &points, &mut source));
+        times[0].push(time(
+            gather(World::new(&volume, &NoSurfaces, lights), &vpls, walk, Clear),
+            &points,
+            &mut source,
+        ));
+        times[1].push(time(
+            gather(World::new(&volume, surfaces, lights), &vpls, walk, Clear),
+            &points,
+            &mut source,
+        ));
+        times[2].push(time(
+            gather(World::new(&volume, &NoSurfaces, lights), &vpls, walk, ratio()),
+            &points,
+            &mut source,
+        ));
         times[3].push(time(gather(world, &vpls, walk, ratio()), &points, &mut source));
     }
     let [geometry, seen, attenuated, whole] = times.map(|mut times| {
@@ -183,27 +194,17 @@ fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
     })
 }
 
-fn gather<'s, G, M, P, T>(
-    world: World<'s, G, M, P, f64>,
+fn gather<'s, W: Types<Spectrum = f64>>(
+    world: World<'s, W>,
     vpls: &'s [Vpl<f64>],
-    walk: Walk<Uniform>,
-    shadow: T,
-) -> Gather<'s, G, M, P, f64, Uniform, T> {
+    walk: Walk<W::Sampling>,
+    shadow: W::Shadow,
+) -> Gather<'s, W> {
     Gather { world, vpls, term: Term::Bounded(BOUND), heuristic: Heuristic::Balance, walk, shadow }
 }
 
 /// Nanoseconds of CPU time per connection.
-fn time<G, M, R, T>(
-    mut gather: Gather<'_, G, M, Isotropic, f64, R, T>,
-    points: &[Vertex],
-    source: &mut Seeded,
-) -> f64
-where
-    G: Geometry<f64>,
-    M: Medium,
-    R: SamplingExtinction,
-    T: RayTransmittance<M>,
-{
+fn time<W: Types<Spectrum = f64>>(mut gather: Gather<'_, W>, points: &[Vertex], source: &mut Seeded) -> f64 {
     let clock = ThreadTime::now();
     for point in points {
         black_box(gather.connected(point, Connected::All, source));

@@ -70,11 +70,12 @@ fn integral<F: SpecimenField + OpticalThickness>(medium: &str, field: F) -> Chec
     })
 }
 
-fn inverse<F, E>(name: &str, medium: &str, field: F, sampler: E) -> Check
-where
-    F: SpecimenField + OpticalThickness,
-    E: FreeFlight<F> + Send + Sync + 'static,
-{
+fn inverse<F: SpecimenField + OpticalThickness, E: FreeFlight<F> + Send + Sync + 'static>(
+    name: &str,
+    medium: &str,
+    field: F,
+    sampler: E,
+) -> Check {
     let words = format!("free flight by {name}");
     check(&format!("depth of {name}/{medium}"), &words, medium, move || {
         agree(deviation_of_inverse(&field, &sampler), thickness::GRANTED)
@@ -82,10 +83,9 @@ where
 }
 
 /// The closed variance of an estimator that scores on the way, below and above the field, against its renewal equation.
-fn variance<E>(kind: &str, name: &str, scoring: Scoring, estimator: E) -> Check
+fn variance<E: Copy + Send + Sync + 'static>(kind: &str, name: &str, scoring: Scoring, estimator: E) -> Check
 where
     for<'f> E: ClosedForm<&'f Bounded<PiecewiseLinear>> + ClosedForm<&'f Bounded<PiecewiseConstant>>,
-    E: Copy + Send + Sync + 'static,
 {
     check(&format!("variance of {kind}/{name}"), kind, "kinks and steps", move || {
         let tent = Bounded::new(tent(), 2.0).expect(LAWFUL);
@@ -99,11 +99,11 @@ where
     .about([Kind::NextFlight])
 }
 
-fn deviation_of_variance<'f, F, E>(field: &'f F, scoring: Scoring, estimator: E) -> f64
-where
-    F: OpticalThickness + Breakpoints + Majorant,
-    E: ClosedForm<&'f F>,
-{
+fn deviation_of_variance<'f, F: OpticalThickness + Breakpoints + Majorant, E: ClosedForm<&'f F>>(
+    field: &'f F,
+    scoring: Scoring,
+    estimator: E,
+) -> f64 {
     let thickness = field.optical_thickness(0.0, field.length());
     let theory = estimator.theory(&mut RayQuadrature::new(field, &[]), thickness, Tolerance::TIGHT);
     (theory.relative_central[0] / relative_variance(field, scoring) - 1.0).abs()

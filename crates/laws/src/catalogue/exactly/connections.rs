@@ -11,7 +11,7 @@ use fairflight_collision::Version;
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, EmptySpace, Line};
-use fairflight_paths::transport::{Lobe, Vertex, World};
+use fairflight_paths::transport::{Lobe, MadeOf, Vertex, World};
 use fairflight_paths::{Heuristic, Uniform, Walk};
 use fairflight_scene::{Geometry, Lights, Material, Segment, Surfaces, Volume};
 use fairflight_sources::{LARGEST_VARIATE, Scripted};
@@ -80,8 +80,8 @@ impl Plates {
         }
     }
 
-    fn world(&self) -> World<'_, Surfaces<f64>, EmptySpace, HenyeyGreenstein, f64> {
-        World { volume: &self.volume, surfaces: &self.surfaces, lights: &self.lights }
+    fn world(&self) -> World<'_, MadeOf<f64, EmptySpace, HenyeyGreenstein, Surfaces<f64>, Uniform, Regular>> {
+        World::new(&self.volume, &self.surfaces, &self.lights)
     }
 
     /// The middle of the floor, or of the ceiling.

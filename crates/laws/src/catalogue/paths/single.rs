@@ -128,15 +128,13 @@ fn tracked<L: fairflight_collision::CollisionModel + Copy>(
     Tracked::new(model, sigma_samp, control).expect(LAWFUL)
 }
 
-fn of<M, P, W, T>(
+fn of<M: LineThickness + Send + Sync + 'static, P: PhaseFunction + Send + Sync + 'static, W, T>(
     scene: &Arc<Scene<M, P>>,
     walk: &str,
     (sampling, more): (Sampling, u64),
     (primary, shadow): (W, T),
 ) -> Check
 where
-    M: LineThickness + Send + Sync + 'static,
-    P: PhaseFunction + Send + Sync + 'static,
     W: Primary<M> + Walks + Clone + Send + Sync + 'static,
     T: RayTransmittance<M> + Clone + Send + Sync + 'static,
 {
@@ -172,11 +170,10 @@ impl Walks for Tracked<SingleParticle> {
     const KINDS: [Kind; 1] = [Kind::SingleParticle];
 }
 
-fn by_line<M, P>(scene: &Arc<Scene<M, P>>, starts: Starts) -> Check
-where
-    M: LineThickness + Send + Sync + 'static,
-    P: PhaseFunction + Send + Sync + 'static,
-{
+fn by_line<M: LineThickness + Send + Sync + 'static, P: PhaseFunction + Send + Sync + 'static>(
+    scene: &Arc<Scene<M, P>>,
+    starts: Starts,
+) -> Check {
     let (id, scene) = (format!("single/{}/algorithm 2, {starts:?}", scene.name), Arc::clone(scene));
     let (name, samples) = (scene.name, scene.samples);
     radiance(id, "single scattering by algorithm 2", name, samples, move |run| {

@@ -12,7 +12,7 @@ use fairflight_compensation::{Compensation, CompensationOptions, LocalMean, Plac
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{AnalyticCosine, Bounds, EmptySpace, Medium};
 use fairflight_paths::transport::{Lobe, Vertex, World};
-use fairflight_paths::{Ratio, RayTransmittance, Uniform, Walk};
+use fairflight_paths::{Ratio, Uniform, Walk};
 use fairflight_scene::{Geometry, Surfaces};
 use fairflight_sources::Seeded;
 use fairflight_transmittance::Regular;
@@ -154,12 +154,9 @@ fn one<G: Geometry<f64>, M: Medium>(
     (bound, steps): (f64, Option<u32>),
     most: f64,
     run: Run,
-) -> CheckResult
-where
-    Ratio<Uniform>: RayTransmittance<M>,
-{
+) -> CheckResult {
     let Room { volume, surfaces, lights, .. } = room;
-    let world = World { volume, surfaces, lights };
+    let world = World::new(volume, surfaces, lights);
     // Nowhere below eq. 21, which stays below 1 times its scale.
     let sampling = Uniform::new(3.0).expect(LAWFUL);
     let walk = Walk::new(Version::NonTerminating, sampling);

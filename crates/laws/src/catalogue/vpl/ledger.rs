@@ -9,7 +9,7 @@ use crate::vpl::scenes::{
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, EmptySpace, Homogeneous, Medium, PhaseFunction};
-use fairflight_paths::transport::World;
+use fairflight_paths::transport::{MadeOf, World};
 use fairflight_paths::{Uniform, Walk};
 use fairflight_scene::{Geometry, NoSurfaces, Surfaces, Volume};
 use fairflight_vpl::{KeepNear, Vpl};
@@ -74,21 +74,16 @@ fn gray() -> Room<Surfaces<f64>, EmptySpace, HenyeyGreenstein> {
 }
 
 /// A room and the power that shines in it, by a formula of its own.
-fn energy<G, M, P>(
+fn energy<G: Geometry<f64> + 'static, M: Medium + 'static, P: PhaseFunction + 'static>(
     name: &str,
     samples: u64,
     room: impl Fn() -> (Room<G, M, P>, f64) + Send + Sync + 'static,
     (version, rate): (Version, f64),
-) -> Check
-where
-    G: Geometry<f64> + 'static,
-    M: Medium + 'static,
-    P: PhaseFunction + 'static,
-{
+) -> Check {
     let id = format!("vpl/energy/{name}");
     Check::new(id, Law::Energy, "light paths", name, samples, move |run| {
         let (Room { volume, surfaces, lights, .. }, power) = room();
-        let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+        let world = World::<MadeOf<_, _, _, _, _>>::new(&volume, &surfaces, &lights);
         let walk = Walk::new(version, Uniform::new(rate).expect(LAWFUL));
         result(&check(world, walk, power, run), run)
     })
@@ -99,7 +94,7 @@ fn first_bounce(name: &str, keep_near: Option<KeepNear>) -> Check {
     let id = format!("vpl/energy/first bounces, {name} kept");
     Check::new(id, Law::Energy, "light paths", "a ball around a point light", MORE, move |run| {
         let Room { volume, surfaces, lights, .. } = mist(1.0);
-        let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+        let world = World::<MadeOf<_, _, _, _, _>>::new(&volume, &surfaces, &lights);
         let walk = Walk::new(OTHER, Uniform::new(3.0).expect(LAWFUL));
         let sigma: f64 = 2.0;
         let expected = POWER * volume.albedo * (1.0 / sigma - (-sigma).exp() * (1.0 + 1.0 / sigma));

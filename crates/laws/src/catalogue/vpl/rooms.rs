@@ -6,8 +6,8 @@ use crate::vpl::rooms::{Replica, Room};
 use crate::vpl::scenes::{GLOW, clear, cloud, round, shiny, smoky};
 use fairflight_collision::Version;
 use fairflight_compensation::{CompensationOptions, Placement};
-use fairflight_media::{Medium, PhaseFunction};
-use fairflight_paths::{Ratio, RayTransmittance, Uniform, Walk};
+use fairflight_media::{LineThickness, PhaseFunction};
+use fairflight_paths::{Ratio, Uniform, Walk};
 use fairflight_scene::Geometry;
 use fairflight_stats::Reference;
 use fairflight_transmittance::Regular;
@@ -60,19 +60,13 @@ fn replica<T>(
     Replica { paths, rays: 1, eye_samples, bound, options, walk, shadow }
 }
 
-fn furnace<G, M, P>(
+fn furnace<G: Geometry<f64> + 'static, M: LineThickness + 'static, P: PhaseFunction + 'static>(
     name: &str,
     room: impl Fn() -> Room<G, M, P> + Send + Sync + 'static,
     radiance: f64,
     options: CompensationOptions,
     size: Size,
-) -> Check
-where
-    G: Geometry<f64> + 'static,
-    M: Medium + 'static,
-    P: PhaseFunction + 'static,
-    Regular: RayTransmittance<M>,
-{
+) -> Check {
     let id = format!("vpl/furnace/{name}");
     Check::new(id, Law::Compensation, "bounded lights and compensation", "furnace", size.3, move |run| {
         let replica = replica(options, size, 2.0, Regular);

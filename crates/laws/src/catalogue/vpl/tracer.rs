@@ -56,20 +56,15 @@ fn of(
     Check::new(format!("paths/tracer/{name}"), Law::Radiance, "path tracing", medium, samples, function)
 }
 
-fn furnace<G, M, P>(
+fn furnace<G: Geometry<f64> + 'static, M: Medium + 'static, P: PhaseFunction + 'static>(
     name: &str,
     room: impl Fn() -> Room<G, M, P> + Send + Sync + 'static,
     rate: f64,
     samples: u64,
-) -> Check
-where
-    G: Geometry<f64> + 'static,
-    M: Medium + 'static,
-    P: PhaseFunction + 'static,
-{
+) -> Check {
     of(&format!("furnace/{name}"), "furnace", samples, move |run| {
         let Room { volume, surfaces, lights, eye } = room();
-        let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+        let world = World::new(&volume, &surfaces, &lights);
         let sampling = Uniform::new(rate).expect(LAWFUL);
         let walk = Walk::new(Version::NonTerminating, sampling);
         let mut tracer = PathTracer::new(world, walk, Ratio(sampling), Heuristic::Balance);
@@ -104,7 +99,7 @@ fn rectangle_lamp(name: &str, heuristic: Heuristic) -> Check {
         let volume = Volume { albedo: 0.0, ..haze(homogeneous(sigma_t), bounds) };
         let surfaces = Surfaces::new(vec![floor(), diffuse(rectangle(corner, u, v), 0.0, RADIANCE)]);
         let lights = environment(0.0);
-        let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+        let world = World::new(&volume, &surfaces, &lights);
         let walk = Walk::new(Version::NonTerminating, Uniform::new(0.8).expect(LAWFUL));
         let mut tracer = PathTracer::new(world, walk, Regular, heuristic);
         let near = reflected_rectangle((corner, u, v), (DVec3::ZERO, DVec3::Y, FLOOR), (RADIANCE, sigma_t));
@@ -121,7 +116,7 @@ fn sphere_lamp(name: &str, heuristic: Heuristic) -> Check {
         let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: phase() };
         let surfaces = Surfaces::new(vec![floor(), diffuse(ball(center, radius), 0.0, RADIANCE)]);
         let lights = environment(0.0);
-        let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+        let world = World::new(&volume, &surfaces, &lights);
         let walk = Walk::new(Version::NonTerminating, Uniform::new(1.0).expect(LAWFUL));
         let mut tracer = PathTracer::new(world, walk, Regular, heuristic);
         let exact = reflected_sphere((center, radius), (DVec3::ZERO, DVec3::Y, FLOOR), RADIANCE);
@@ -133,7 +128,7 @@ fn sphere_lamp(name: &str, heuristic: Heuristic) -> Check {
 fn as_by_balance(name: &str, heuristic: Heuristic) -> Check {
     of(&format!("smoke/{name} and balance"), "smoke", WEIGHTED, move |run| {
         let Room { volume, surfaces, lights, eye } = smoky();
-        let world = World { volume: &volume, surfaces: &surfaces, lights: &lights };
+        let world = World::new(&volume, &surfaces, &lights);
         let sampling = Uniform::new(3.0).expect(LAWFUL);
         let walk = Walk::new(Version::NonTerminating, sampling);
         let [mut one, mut other] =
