@@ -210,6 +210,18 @@ fn bounds_are_short() {
     assert!(total <= TOTAL, "{total} lines of bounds, more than {TOTAL}");
 }
 
+/// A type says what it holds: something to be done is a function, or an object with a method.
+#[test]
+fn no_type_is_a_job() {
+    for folder in ["crates", "harness", "tests"] {
+        for (path, text) in sources(folder) {
+            let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+            let mut jobs = words.filter(|word| word.ends_with("Job") && *word != "Job");
+            assert_eq!(jobs.next(), None, "{}", path.display());
+        }
+    }
+}
+
 #[test]
 fn no_path_of_a_machine() {
     // Spelled in two parts, so that this file has none.

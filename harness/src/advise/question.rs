@@ -9,7 +9,7 @@ use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::reader::{Node, json};
 use crate::report::document::Volume;
 use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec};
-use fairflight_media::{Bounds, Tolerance};
+use fairflight_media::{Bounds, Medium, Tolerance};
 use fairflight_scene::Camera;
 use fairflight_sources::{Seeded, UniformSource, derive_seed};
 use std::io::Read;

@@ -37,18 +37,15 @@ impl Shadow {
         DoubleParticleSpec::at(medium.greatest_extinction(key)?, ControlSpec::none()).for_all_rays(key)
     }
 
-    /// One worker's estimator where look-ups are all there is; `None` for the closed form.
+    /// True for the closed form.
     #[must_use]
-    pub fn by_look_ups<'s>(&'s self, unlawful: &'s Cell<Option<Unlawful>>) -> Option<RayWorker<'s>> {
-        match self {
-            Self::Regular => None,
-            Self::Sampled(estimator) => Some(estimator.worker(unlawful)),
-        }
+    pub fn is_regular(&self) -> bool {
+        matches!(self, Self::Regular)
     }
 
-    /// One worker's estimator where a closed form exists.
+    /// One worker's estimator; the first look-up that it is not defined for is left in `unlawful`.
     #[must_use]
-    pub fn by_closed_form<'s>(&'s self, unlawful: &'s Cell<Option<Unlawful>>) -> ShadowWorker<'s> {
+    pub fn worker<'s>(&'s self, unlawful: &'s Cell<Option<Unlawful>>) -> ShadowWorker<'s> {
         match self {
             Self::Regular => ShadowWorker::Regular(Regular),
             Self::Sampled(estimator) => ShadowWorker::Sampled(estimator.worker(unlawful)),
@@ -56,7 +53,7 @@ impl Shadow {
     }
 }
 
-/// Shadow rays where a closed form exists: one branch per ray.
+/// Transmittance of any kind: one branch per ray.
 #[derive(Debug)]
 pub enum ShadowWorker<'a> {
     /// In closed form.

@@ -3,8 +3,9 @@
 use super::VoxelLattice;
 use crate::Failure;
 use fairflight_media::{
-    AnalyticCosine, EmptySpace, ExpressionMedium, Homogeneous, LineThickness, Medium, Perlin, Voxels,
+    AnalyticCosine, EmptySpace, ExpressionMedium, Homogeneous, Line, LineThickness, Medium, Perlin, Voxels,
 };
+use glam::DVec3;
 use std::sync::Arc;
 
 /// A medium of any kind.
@@ -24,35 +25,48 @@ pub enum AnyMedium {
     Voxels(Arc<Voxels<VoxelLattice>>),
 }
 
-/// Something to be done with a medium of whatever type it has. The two differ in what is known of it.
-pub trait MediumJob {
-    /// The result of the job.
-    type Output;
-    /// Does it where only look-ups are to be had.
-    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output;
-    /// Does it where the optical thickness along a line has a closed form.
-    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output;
+/// One expression of the medium inside, whatever its type.
+macro_rules! of_any {
+    ($any:expr, $medium:ident => $result:expr) => {
+        match $any {
+            AnyMedium::Empty => {
+                let $medium = &EmptySpace;
+                $result
+            }
+            AnyMedium::Homogeneous($medium) => $result,
+            AnyMedium::AnalyticCosine($medium) => $result,
+            AnyMedium::Perlin($medium) => $result,
+            AnyMedium::Expression($medium) => $result,
+            AnyMedium::Voxels($medium) => $result,
+        }
+    };
 }
 
-impl AnyMedium {
-    /// Does a job with the medium inside.
-    pub fn with<J: MediumJob>(&self, job: J) -> J::Output {
-        match self {
-            Self::Empty => job.by_closed_form(&EmptySpace),
-            Self::Homogeneous(medium) => job.by_closed_form(&**medium),
-            Self::AnalyticCosine(medium) => job.by_closed_form(&**medium),
-            Self::Perlin(medium) => job.by_look_ups(&**medium),
-            Self::Expression(medium) => job.by_look_ups(&**medium),
-            Self::Voxels(medium) => job.by_closed_form(&**medium),
-        }
+/// One branch per look-up: for what is prepared once. An image is compiled for the type of its medium.
+impl Medium for AnyMedium {
+    fn local(&self, line: Line) -> Line {
+        of_any!(self, medium => medium.local(line))
+    }
+    #[inline]
+    fn sigma_t_local(&self, point: DVec3) -> f64 {
+        of_any!(self, medium => medium.sigma_t_local(point))
+    }
+    fn upper_bound(&self) -> Option<f64> {
+        of_any!(self, medium => medium.upper_bound())
+    }
+    fn lower_bound(&self) -> Option<f64> {
+        of_any!(self, medium => medium.lower_bound())
     }
 }
 
 impl AnyMedium {
-    /// The bound of σ_t that the medium declares \[1/length\].
+    /// True where the optical thickness along a line has a closed form.
     #[must_use]
-    pub fn upper_bound(&self) -> Option<f64> {
-        self.with(UpperBound)
+    pub fn has_closed_form(&self) -> bool {
+        match self {
+            Self::Empty | Self::Homogeneous(_) | Self::AnalyticCosine(_) | Self::Voxels(_) => true,
+            Self::Perlin(_) | Self::Expression(_) => false,
+        }
     }
 
     /// The greatest extinction that the medium declares, positive also where there is none; `key` is what needs it.
@@ -70,14 +84,62 @@ impl AnyMedium {
     }
 }
 
-struct UpperBound;
+/// A medium without a closed form, as integrators take it that might ask for one: a scene that would ask is refused when it is planned
+/// ([`AnyMedium::has_closed_form`]).
+#[derive(Clone, Copy, Debug)]
+pub struct OnlyLookUps<M>(pub M);
 
-impl MediumJob for UpperBound {
-    type Output = Option<f64>;
-    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Option<f64> {
-        medium.upper_bound()
+impl<M: Medium> Medium for OnlyLookUps<M> {
+    const IS_EMPTY: bool = M::IS_EMPTY;
+
+    fn local(&self, line: Line) -> Line {
+        self.0.local(line)
     }
-    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Option<f64> {
-        medium.upper_bound()
+    #[inline]
+    fn sigma_t_local(&self, point: DVec3) -> f64 {
+        self.0.sigma_t_local(point)
+    }
+    fn upper_bound(&self) -> Option<f64> {
+        self.0.upper_bound()
+    }
+    fn lower_bound(&self) -> Option<f64> {
+        self.0.lower_bound()
+    }
+}
+
+impl<M: Medium> LineThickness for OnlyLookUps<M> {
+    fn line_thickness(&self, _local: &Line, _from: f64, _to: f64) -> f64 {
+        unreachable!("what needs a closed form is refused when a scene is planned")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::PerlinParameters;
+
+    fn perlin() -> Perlin {
+        let (octaves, frequency, lacunarity, gain) = (3, 0.8, 2.0, 0.5);
+        let (scale, offset, seed) = (1.0, 0.2, 1);
+        let parameters = PerlinParameters { octaves, frequency, lacunarity, gain, scale, offset, seed };
+        Perlin::new(parameters).unwrap()
+    }
+
+    #[test]
+    fn any_medium_is_the_medium_inside() {
+        let (homogeneous, cosine, perlin) =
+            (Homogeneous::new(0.7).unwrap(), AnalyticCosine::new(1.3).unwrap(), perlin());
+        fn agrees<M: Medium>(any: &AnyMedium, inside: &M) {
+            assert_eq!((any.upper_bound(), any.lower_bound()), (inside.upper_bound(), inside.lower_bound()));
+            for k in 0..20 {
+                let point = f64::from(k) * DVec3::new(0.31, -0.17, 0.07);
+                assert_eq!(any.sigma_t(point).to_bits(), inside.sigma_t(point).to_bits());
+            }
+        }
+        agrees(&AnyMedium::Empty, &EmptySpace);
+        agrees(&AnyMedium::Homogeneous(Arc::new(homogeneous)), &homogeneous);
+        agrees(&AnyMedium::AnalyticCosine(Arc::new(cosine)), &cosine);
+        agrees(&AnyMedium::Perlin(Arc::new(perlin.clone())), &perlin);
+        agrees(&AnyMedium::Perlin(Arc::new(perlin.clone())), &OnlyLookUps(&perlin));
     }
 }

@@ -25,11 +25,11 @@ pub use homogeneous::HomogeneousSpec;
 pub use known::{ErasedField, Field, Knowledge, KnownField, ThicknessMethod};
 pub use library::MediumLibrary;
 pub(crate) use library::{glam_affine, grown_bounds};
-pub use medium::{AnyMedium, MediumJob};
+pub use medium::{AnyMedium, OnlyLookUps};
 pub use perlin::PerlinSpec;
 pub use piecewise_constant::PiecewiseConstantSpec;
 pub use piecewise_linear::PiecewiseLinearSpec;
-pub use profile::{AnyProfile, FieldJob};
+pub use profile::AnyProfile;
 pub use vdb::VdbSpec;
 pub use voxel_lattice::VoxelLattice;
 

@@ -1,7 +1,7 @@
 //! A profile of any kind.
 
 use super::known::ErasedField;
-use super::{AnyMedium, Field, KnownField, VoxelLattice, refused};
+use super::{AnyMedium, KnownField, VoxelLattice, refused};
 use crate::Failure;
 use crate::estimator::{On, Trial};
 use fairflight_media::{
@@ -23,11 +23,6 @@ macro_rules! profiles {
             #[must_use]
             pub fn field(&self) -> &dyn KnownField {
                 match self { $(Self::$Variant(field) => field),+ }
-            }
-
-            /// Does a job with the field inside, compiled for its type.
-            pub fn with<J: FieldJob>(&self, job: J) -> J::Output {
-                match self { $(Self::$Variant(field) => job.run(field)),+ }
             }
 
             /// An estimator on this profile, compiled for the type of its field.
@@ -72,16 +67,6 @@ profiles! {
     ExpressionMedium(Certified<Ray<Arc<ExpressionMedium>>>),
     /// A ray through voxels.
     Voxels(Ray<Arc<Voxels<VoxelLattice>>>),
-}
-
-/// Something to be done with a field of whatever type it has, per look-up.
-pub trait FieldJob {
-    /// The result of the job.
-    type Output;
-    /// Runs on the field.
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field;
 }
 
 /// A ray that crosses more voxel cells than this is refused: its reference alone would take minutes.

@@ -1,25 +1,27 @@
-//! An integrator of any kind, instantiated over the medium that it meets.
+//! An integrator of any kind, compiled for the medium that it meets.
 
 use super::single_scattering::SingleScatteringPlan;
-use super::transport::{AmongSurfaces, PathTracerPlan, Stage, VplPlan};
-use super::{SpaceSampling, WalkPlan};
+use super::transport::{PathTracerPlan, Stage, VplPlan};
+use super::{AnyPhase, WalkPlan};
 use crate::Failure;
-use crate::estimator::{RayEstimator, Shadow, Unlawful};
+use crate::estimator::{Shadow, Unlawful};
 use crate::field::AnyMedium;
 use crate::spec::{IntegratorSpec, Particles, TransmittanceSpec};
-use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
+use fairflight_media::{Bounds, Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
-use fairflight_scene::{Lights, Spectrum, Volume};
+use fairflight_scene::{Spectrum, Volume};
+use fairflight_sources::Seeded;
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
 use std::cell::Cell;
+
+/// The volume of a scene whose medium has one type.
+pub type SceneVolume<'s, M, C> = Volume<M, &'s AnyPhase, C>;
 
 /// An integrator whose parameters are checked.
 #[derive(Debug)]
 pub enum IntegratorPlan {
     /// The background seen through the medium.
-    Transmittance(RayEstimator),
-    /// The same in closed form.
-    RegularTransmittance,
+    Transmittance(Shadow),
     /// Importons.
     ParticleTracer(WalkPlan),
     /// Photons, which are not drawn pixel by pixel; here is the background, attenuated by ratio tracking at the same rate.
@@ -43,55 +45,87 @@ pub enum IntegratorPlan {
     Vpl(Box<VplPlan>),
 }
 
-/// An integrator, and what it has to say at the end of a tile.
-pub trait TileIntegrator<C>: Integrator<C> {
-    /// The number of walks that were cut: each is a bias.
-    fn truncated(&self) -> u64 {
-        0
-    }
+/// An integrator on a medium, for one tile: one call per camera ray, and what happens below is compiled for the types of the scene.
+pub trait TileIntegrator<C> {
+    /// Draws one estimate \[radiance\] for a ray whose direction has unit length.
+    fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C;
 
-    /// How many compensation vertices were tried, and how many of them counted.
-    fn compensation_vertices(&self) -> (u64, u64) {
-        (0, 0)
+    /// Events that were counted so far.
+    fn counts(&self) -> Counts;
+}
+
+/// Events of an integrator that an image tells of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Walks that were cut: each is a bias.
+    pub truncated: u64,
+    /// Compensation vertices that were tried.
+    pub compensation_tried: u64,
+    /// Those of them that lay where something was lost.
+    pub compensation_inside: u64,
+}
+
+/// An integrator of any kind.
+pub type AnyIntegrator<'s, C> = Box<dyn TileIntegrator<C> + 's>;
+
+/// An integrator of one type, and how its counts are asked for.
+struct Compiled<I> {
+    integrator: I,
+    counts: fn(&I) -> Counts,
+}
+
+impl<C: Spectrum, I: Integrator<C>> TileIntegrator<C> for Compiled<I> {
+    fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C {
+        // In registers while it changes.
+        let mut own = source.clone();
+        let radiance = self.integrator.radiance(line, &mut own);
+        *source = own;
+        radiance
+    }
+    fn counts(&self) -> Counts {
+        (self.counts)(&self.integrator)
     }
 }
 
-impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C>
-    for ParticleTracer<'_, M, P, C, SpaceSampling<'_>>
-{
-    fn truncated(&self) -> u64 {
-        Self::truncated(self)
-    }
+/// An integrator with its counts.
+pub(super) fn counting<'s, C: Spectrum, I: Integrator<C> + 's>(
+    integrator: I,
+    counts: fn(&I) -> Counts,
+) -> AnyIntegrator<'s, C> {
+    Box::new(Compiled { integrator, counts })
 }
-impl<M: Medium, P: PhaseFunction, C: Spectrum> TileIntegrator<C>
-    for LineSplitting<'_, M, P, C, SpaceSampling<'_>>
-{
-    fn truncated(&self) -> u64 {
-        Self::truncated(self)
-    }
-}
-impl<M, P, C, T> TileIntegrator<C> for Attenuation<'_, M, P, C, T> where Self: Integrator<C> {}
 
-/// Something to be done with an integrator.
-pub trait IntegratorJob<C> {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn run<I: TileIntegrator<C>>(self, integrator: I) -> Self::Output;
+/// An integrator that counts nothing.
+pub(super) fn plain<'s, C: Spectrum>(integrator: impl Integrator<C> + 's) -> AnyIntegrator<'s, C> {
+    counting(integrator, |_| Counts::default())
+}
+
+impl Counts {
+    /// Walks that were cut, and nothing else.
+    pub(super) fn cut(truncated: u64) -> Self {
+        Self { truncated, ..Self::default() }
+    }
 }
 
 impl IntegratorPlan {
     /// The integrator of a spec in a medium.
     ///
     /// # Errors
-    /// If a parameter is not lawful.
+    /// If a parameter is not lawful, or the medium has no closed form that the integrator needs.
     pub fn build(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+        let plan = Self::of(spec, medium, bounds)?;
+        match plan.needs_closed_form() {
+            Some(what) if !medium.has_closed_form() => Err(Failure::refused(format!(
+                "integrator.{what} needs a medium whose optical thickness has a closed form: homogeneous, analytic_cosine or vdb"
+            ))),
+            _ => Ok(plan),
+        }
+    }
+
+    fn of(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
         match spec {
             IntegratorSpec::Transmittance(TransmittanceSpec { estimator }) => {
-                Ok(match estimator.kind().for_all_rays("integrator.estimator")? {
-                    Shadow::Regular => Self::RegularTransmittance,
-                    Shadow::Sampled(estimator) => Self::Transmittance(estimator),
-                })
+                estimator.kind().for_all_rays("integrator.estimator").map(Self::Transmittance)
             }
             IntegratorSpec::ParticleTracer(tracer) => {
                 let walk = WalkPlan::build(&tracer.walk, medium, bounds)?;
@@ -128,7 +162,7 @@ impl IntegratorPlan {
             }
             Self::PathTracer(plan) => Some(&plan.transport.walk),
             Self::Vpl(plan) => Some(&plan.transport.walk),
-            Self::Transmittance(_) | Self::RegularTransmittance | Self::SingleScattering(_) => None,
+            Self::Transmittance(_) | Self::SingleScattering(_) => None,
         }
     }
 
@@ -137,7 +171,6 @@ impl IntegratorPlan {
     pub fn draws_in_batches(&self) -> bool {
         match self {
             Self::Transmittance(_)
-            | Self::RegularTransmittance
             | Self::ParticleTracer(_)
             | Self::PhotonTracer(_)
             | Self::LineSplitting { .. }
@@ -147,77 +180,55 @@ impl IntegratorPlan {
         }
     }
 
-    /// Does a job with the integrator inside, on a medium of which only look-ups are to be had. The first look-up that an
-    /// estimator is not defined for is left in `unlawful`.
-    ///
-    /// # Errors
-    /// If the integrator needs a closed form, or does not fit the lights.
-    pub fn by_look_ups<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        stage: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        match self {
-            Self::SingleScattering(plan) => plan.by_look_ups(volume, stage.lights, unlawful, job),
-            Self::PathTracer(plan) => plan.by_look_ups(volume, stage, unlawful, job),
-            Self::Vpl(plan) => plan.by_look_ups(volume, stage, unlawful, job),
-            _ => self.on_any_medium(volume, stage.lights, unlawful, job),
-        }
-    }
-
-    /// The same on a medium whose optical thickness has a closed form.
+    /// The integrator in a volume, for one tile. The first look-up that an estimator of transmittance is not defined for is left in
+    /// `unlawful`.
     ///
     /// # Errors
     /// If the integrator does not fit the lights.
-    pub fn by_closed_form<'s, M: LineThickness, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
+    pub fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
-        volume: &'s Volume<M, P, C>,
+        volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
+    ) -> Result<AnyIntegrator<'s, C>, Failure> {
+        let lights = stage.lights;
         if M::IS_EMPTY {
             // Only integrators that know surfaces have anything to do: all others see the background.
             return Ok(match self {
-                Self::PathTracer(plan) => plan.by_closed_form(volume, stage, unlawful, job),
-                Self::Vpl(plan) => plan.by_closed_form(volume, stage, unlawful, job),
-                _ => job.run(Attenuation::new(volume, stage.lights, Regular)),
+                Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
+                Self::Vpl(plan) => plan.on(volume, stage, unlawful),
+                _ => plain(Attenuation::new(volume, lights, Regular)),
             });
         }
-        match self {
-            Self::RegularTransmittance => Ok(job.run(Attenuation::new(volume, stage.lights, Regular))),
-            Self::SingleScattering(plan) => plan.by_closed_form(volume, stage.lights, unlawful, job),
-            Self::PathTracer(plan) => Ok(plan.by_closed_form(volume, stage, unlawful, job)),
-            Self::Vpl(plan) => Ok(plan.by_closed_form(volume, stage, unlawful, job)),
-            _ => self.on_any_medium(volume, stage.lights, unlawful, job),
-        }
-    }
-
-    /// Integrators that are the same whatever is known of the medium; one copy of each per medium.
-    fn on_any_medium<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        match self {
-            Self::Transmittance(estimator) => {
-                Ok(job.run(Attenuation::new(volume, lights, estimator.worker(unlawful))))
+        Ok(match self {
+            Self::Transmittance(shadow) => plain(Attenuation::new(volume, lights, shadow.worker(unlawful))),
+            Self::ParticleTracer(walk) => {
+                let tracer = ParticleTracer::new(volume, lights, walk.walk());
+                counting(tracer, |tracer| Counts::cut(tracer.truncated()))
             }
-            Self::ParticleTracer(walk) => Ok(job.run(ParticleTracer::new(volume, lights, walk.walk()))),
             Self::PhotonTracer(walk) => {
-                Ok(job.run(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling()))))
+                plain(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling())))
             }
             Self::LineSplitting { walk, line, starts, majorant } => {
                 let asked = (*line, *starts, *majorant);
-                Ok(job.run(LineSplitting::new(volume, lights, walk.walk(), asked)))
+                let splitting = LineSplitting::new(volume, lights, walk.walk(), asked);
+                counting(splitting, |splitting| Counts::cut(splitting.truncated()))
             }
-            Self::RegularTransmittance | Self::SingleScattering(_) | Self::PathTracer(_) | Self::Vpl(_) => {
-                Err(needs_closed_form("estimator.kind: regular"))
-            }
+            Self::SingleScattering(plan) => return plan.on(volume, lights, unlawful),
+            Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
+            Self::Vpl(plan) => plan.on(volume, stage, unlawful),
+        })
+    }
+
+    /// The key whose value asks for a closed form of the optical thickness, if there is one.
+    fn needs_closed_form(&self) -> Option<&'static str> {
+        const ESTIMATOR: &str = "estimator.kind: regular";
+        match self {
+            Self::Transmittance(shadow) => shadow.is_regular().then_some(ESTIMATOR),
+            Self::PathTracer(plan) => plan.transport.shadow.is_regular().then_some(ESTIMATOR),
+            Self::Vpl(plan) => plan.transport.shadow.is_regular().then_some(ESTIMATOR),
+            Self::SingleScattering(plan) => plan.needs_closed_form(),
+            Self::ParticleTracer(_) | Self::PhotonTracer(_) | Self::LineSplitting { .. } => None,
         }
     }
 
@@ -235,7 +246,7 @@ impl IntegratorPlan {
             Self::SingleScattering(plan) => plan.admits((lowest, highest)),
             Self::PathTracer(plan) => plan.transport.walk.admits((lowest, highest), albedo),
             Self::Vpl(plan) => plan.transport.walk.admits((lowest, highest), albedo),
-            Self::Transmittance(_) | Self::RegularTransmittance => Ok(()),
+            Self::Transmittance(_) => Ok(()),
         }
     }
 
@@ -244,7 +255,7 @@ impl IntegratorPlan {
     pub fn explain(&self, Unlawful { point, sigma_t }: Unlawful) -> Failure {
         let at = format!("sigma_t = {sigma_t} at [{}, {}, {}]", point.x, point.y, point.z);
         let majorant = match self {
-            Self::Transmittance(estimator) => estimator.collision_majorant(),
+            Self::Transmittance(Shadow::Sampled(estimator)) => estimator.collision_majorant(),
             _ => None,
         };
         Failure::refused(match (self, majorant) {
@@ -255,12 +266,6 @@ impl IntegratorPlan {
             _ => format!("integrator.estimator: not defined for {at}"),
         })
     }
-}
-
-pub(super) fn needs_closed_form(what: &str) -> Failure {
-    Failure::refused(format!(
-        "integrator.{what} needs a medium whose optical thickness has a closed form: homogeneous, analytic_cosine or vdb"
-    ))
 }
 
 /// Whether a claimed majorant is one.

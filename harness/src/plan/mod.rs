@@ -12,11 +12,11 @@ mod surfaces;
 mod transport;
 mod walk;
 
-pub use integrator::{IntegratorJob, IntegratorPlan, TileIntegrator};
+pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, TileIntegrator};
 pub use phase::AnyPhase;
 pub use scene::{Radiant, ScenePlan, Spectra};
 pub use single_scattering::SingleScatteringPlan;
-pub use transport::{PathTracerPlan, Stage, TransportPlan, VplPlan};
+pub use transport::{PathTracerPlan, Seen, Stage, TransportPlan, VplPlan};
 pub use walk::{SpaceSampling, WalkPlan};
 
 use crate::Failure;

@@ -1,7 +1,6 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
-use super::integrator::{admits_majorant, needs_closed_form};
-use super::{IntegratorJob, TileIntegrator};
+use super::integrator::{AnyIntegrator, SceneVolume, admits_majorant, plain};
 use crate::Failure;
 use crate::estimator::{
     ControlSpec, DoubleParticleSpec, EstimatorSpec, LineIntegralSpec, SamplingSpec, Shadow,
@@ -9,13 +8,12 @@ use crate::estimator::{
 };
 use crate::spec::{SingleScatteringSpec, Strategy};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
-use fairflight_media::{LineThickness, Medium, PhaseFunction, Ray};
+use fairflight_media::{LineThickness, Ray};
 use fairflight_paths::single_scattering::{
     Heuristic, LineSampled, Marching, Primary, Sampling, SamplingError, SharedExplorers, SingleScattering,
     Technique, Tracked,
 };
-use fairflight_paths::{Integrator, RayTransmittance};
-use fairflight_scene::{Lights, Spectrum, Volume};
+use fairflight_scene::{Lights, Spectrum};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{Explorers, Interaction, LineIntegral, Offset, RayMarching, Regular, Starts};
 use std::cell::Cell;
@@ -91,87 +89,45 @@ impl SingleScatteringPlan {
         }
     }
 
-    pub(super) fn by_look_ups<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        let shadow = self
-            .shadow
-            .by_look_ups(unlawful)
-            .ok_or_else(|| needs_closed_form("shadow (or estimator): regular"))?;
-        self.tracked(volume, lights, shadow, job)
-    }
-
-    pub(super) fn by_closed_form<'s, M: LineThickness, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        let shadow = self.shadow.by_closed_form(unlawful);
-        match self.primary {
-            PrimaryPlan::Regular => self.with(volume, lights, Regular, shadow, job),
-            _ => self.tracked(volume, lights, shadow, job),
+    /// The key whose value asks for a closed form of the optical thickness, if there is one.
+    pub(super) fn needs_closed_form(&self) -> Option<&'static str> {
+        if self.shadow.is_regular() {
+            return Some("shadow (or estimator): regular");
         }
+        matches!(self.primary, PrimaryPlan::Regular).then_some("estimator.kind: regular")
     }
 
-    /// What needs look-ups only, whatever the shadow rays do.
-    fn tracked<'s, M: Medium, P: PhaseFunction, C: Spectrum, T: RayTransmittance<M>, J: IntegratorJob<C>>(
-        &self,
-        volume: &'s Volume<M, P, C>,
+    pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
+        &'s self,
+        volume: &'s SceneVolume<'s, M, C>,
         lights: &'s Lights<C>,
-        shadow: T,
-        job: J,
-    ) -> Result<J::Output, Failure> {
+        unlawful: &'s Cell<Option<Unlawful>>,
+    ) -> Result<AnyIntegrator<'s, C>, Failure> {
+        let shadow = self.shadow.worker(unlawful);
         let refuse = |error| Failure::refused(format!("integrator.estimator.sigma_samp: {error}"));
         let explorers = |wanted: bool| wanted.then(|| self.explorers()).transpose();
-        match self.primary {
-            PrimaryPlan::Regular => Err(needs_closed_form("estimator.kind: regular")),
+        let primary = match self.primary {
+            PrimaryPlan::Regular => AnyPrimary::Regular(Regular),
             PrimaryPlan::Double { sigma_samp, control } => {
                 let model = DoubleParticle { albedo: Albedo::default() };
-                let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
-                self.with(volume, lights, AnyTracked::Double(walk), shadow, job)
+                AnyPrimary::Double(Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?)
             }
             PrimaryPlan::Single { model, sigma_samp, control } => {
-                let walk = Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?;
-                self.with(volume, lights, AnyTracked::Single(walk), shadow, job)
+                AnyPrimary::Single(Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?)
             }
             PrimaryPlan::Line { majorant, line, starts } => {
-                Ok(job.run(LineSampled::new(volume, lights, (line, starts, majorant), shadow)))
+                return Ok(plain(LineSampled::new(volume, lights, (line, starts, majorant), shadow)));
             }
             PrimaryPlan::Marching { steps, offset, shadow } => {
-                Ok(job.run(Marching::new(volume, lights, (steps, offset), shadow)))
+                return Ok(plain(Marching::new(volume, lights, (steps, offset), shadow)));
             }
-        }
-    }
-
-    fn with<
-        's,
-        M: Medium,
-        P: PhaseFunction,
-        C: Spectrum,
-        W: Primary<M>,
-        T: RayTransmittance<M>,
-        J: IntegratorJob<C>,
-    >(
-        &self,
-        volume: &'s Volume<M, P, C>,
-        lights: &'s Lights<C>,
-        walk: W,
-        shadow: T,
-        job: J,
-    ) -> Result<J::Output, Failure> {
+        };
         let asked = (self.sampling, self.samples);
-        SingleScattering::new(volume, lights, asked, walk, shadow, self.explorers()?)
-            .map(|integrator| job.run(integrator))
-            .map_err(|error| {
-                let key = if error == SamplingError::NoSamples { "samples_per_ray" } else { "sampling" };
-                Failure::refused(format!("integrator.{key}: {error}"))
-            })
+        let integrator = SingleScattering::new(volume, lights, asked, primary, shadow, self.explorers()?);
+        integrator.map(plain).map_err(|error| {
+            let key = if error == SamplingError::NoSamples { "samples_per_ray" } else { "sampling" };
+            Failure::refused(format!("integrator.{key}: {error}"))
+        })
     }
 
     fn explorers(&self) -> Result<SharedExplorers, Failure> {
@@ -271,52 +227,42 @@ fn sampling(strategy: Strategy, heuristic: Heuristic) -> Sampling {
     }
 }
 
-/// Tracking of the camera ray with either model: one branch per question, and half of the integrators to compile.
+/// Transmittance of the camera ray of any kind: one branch per question, and a third of the integrators to compile.
 #[derive(Debug)]
-enum AnyTracked {
+enum AnyPrimary {
+    Regular(Regular),
     Double(Tracked<DoubleParticle>),
     Single(Tracked<SingleParticle>),
 }
 
-impl<M: Medium> Primary<M> for AnyTracked {
-    fn trace(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) {
-        match self {
-            Self::Double(walk) => walk.trace(ray, source),
-            Self::Single(walk) => walk.trace(ray, source),
+/// One expression of the transmittance inside, whatever its type.
+macro_rules! of_any {
+    ($any:expr, $primary:ident => $result:expr) => {
+        match $any {
+            AnyPrimary::Regular($primary) => $result,
+            AnyPrimary::Double($primary) => $result,
+            AnyPrimary::Single($primary) => $result,
         }
-    }
-    fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64 {
-        match self {
-            Self::Double(walk) => walk.transmittance(ray, s),
-            Self::Single(walk) => walk.transmittance(ray, s),
-        }
-    }
-    fn interactions(&self) -> &[Interaction] {
-        match self {
-            Self::Double(walk) => Primary::<M>::interactions(walk),
-            Self::Single(walk) => Primary::<M>::interactions(walk),
-        }
-    }
-    fn transmittance_before(&self, index: usize) -> f64 {
-        match self {
-            Self::Double(walk) => Primary::<M>::transmittance_before(walk, index),
-            Self::Single(walk) => Primary::<M>::transmittance_before(walk, index),
-        }
-    }
-    fn intensity(&self) -> f64 {
-        match self {
-            Self::Double(walk) => Primary::<M>::intensity(walk),
-            Self::Single(walk) => Primary::<M>::intensity(walk),
-        }
-    }
-    fn fitted(&self) -> Option<&Explorers> {
-        match self {
-            Self::Double(walk) => Primary::<M>::fitted(walk),
-            Self::Single(walk) => Primary::<M>::fitted(walk),
-        }
-    }
+    };
 }
 
-impl<M, P, C, W, T> TileIntegrator<C> for SingleScattering<'_, M, P, C, W, T> where Self: Integrator<C> {}
-impl<M, P, C> TileIntegrator<C> for Marching<'_, M, P, C> where Self: Integrator<C> {}
-impl<M, P, C, T> TileIntegrator<C> for LineSampled<'_, M, P, C, T> where Self: Integrator<C> {}
+impl<M: LineThickness> Primary<M> for AnyPrimary {
+    fn trace(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) {
+        of_any!(self, primary => Primary::<M>::trace(primary, ray, source));
+    }
+    fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64 {
+        of_any!(self, primary => Primary::<M>::transmittance(primary, ray, s))
+    }
+    fn interactions(&self) -> &[Interaction] {
+        of_any!(self, primary => Primary::<M>::interactions(primary))
+    }
+    fn transmittance_before(&self, index: usize) -> f64 {
+        of_any!(self, primary => Primary::<M>::transmittance_before(primary, index))
+    }
+    fn intensity(&self) -> f64 {
+        of_any!(self, primary => Primary::<M>::intensity(primary))
+    }
+    fn fitted(&self) -> Option<&Explorers> {
+        of_any!(self, primary => Primary::<M>::fitted(primary))
+    }
+}

@@ -1,16 +1,16 @@
 //! Integrators that know surfaces: the path tracer, and virtual point lights.
 
-use super::integrator::needs_closed_form;
-use super::{AnyPhase, IntegratorJob, Radiant, SpaceSampling, TileIntegrator, WalkPlan};
+use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
+use super::{AnyPhase, Radiant, SpaceSampling, WalkPlan};
 use crate::Failure;
-use crate::estimator::{Shadow, Unlawful};
-use crate::field::{AnyMedium, MediumJob};
+use crate::estimator::{Shadow, ShadowWorker, Unlawful};
+use crate::field::AnyMedium;
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
-use fairflight_media::{Bounds, LineThickness, Medium, PhaseFunction};
-use fairflight_paths::transport::{Types, Vertex, World};
-use fairflight_paths::{Heuristic, PathTracer, RayTransmittance};
-use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces, Volume};
+use fairflight_media::{Bounds, LineThickness};
+use fairflight_paths::transport::{MadeOf, Types, Vertex, World};
+use fairflight_paths::{Heuristic, PathTracer};
+use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
 use fairflight_sources::UniformSource;
 use fairflight_vpl::{
     Component, Connected, Correction, Gather, Pairing, Term, Uncorrected, Vpl, VplIntegrator,
@@ -42,7 +42,8 @@ impl<C> Copy for Stage<'_, C> {}
 pub struct TransportPlan {
     /// Flights.
     pub walk: WalkPlan,
-    shadow: Shadow,
+    /// Transmittance of connections.
+    pub(super) shadow: Shadow,
     heuristic: Heuristic,
 }
 
@@ -105,7 +106,7 @@ impl VplPlan {
             eye_samples: spec.eye_samples,
             clamp: spec.clamp,
             compensation: spec.compensation,
-            mean: medium.with(Mean { bounds, cells }),
+            mean: LocalMean::of(medium, bounds, [cells; 3], PROBES),
             keep_near: spec.keep_near,
             component: spec.component,
         })
@@ -153,113 +154,72 @@ impl VplPlan {
     }
 }
 
-struct Mean<'a> {
-    bounds: &'a Bounds,
-    cells: u32,
-}
+/// The types of a scene that has surfaces of the type G, or [`NoSurfaces`].
+pub type Seen<'s, M, C, G> = MadeOf<C, M, &'s AnyPhase, G, SpaceSampling<'s>, ShadowWorker<'s>>;
 
-impl MediumJob for Mean<'_> {
-    type Output = LocalMean;
-    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> LocalMean {
-        LocalMean::of(medium, self.bounds, [self.cells; 3], PROBES)
-    }
-    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> LocalMean {
-        self.by_look_ups(medium)
-    }
-}
-
-/// A kind of integrator among surfaces, instantiated for a scene with or without them.
-pub(super) trait AmongSurfaces {
-    /// How it travels.
-    fn transport(&self) -> &TransportPlan;
-
-    /// Does a job with the integrator.
-    fn run<'s, W: Types<Sampling = SpaceSampling<'s>>, J: IntegratorJob<W::Spectrum>>(
+impl PathTracerPlan {
+    pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
-        world: World<'s, W>,
-        stage: Stage<'s, W::Spectrum>,
-        shadow: W::Shadow,
-        job: J,
-    ) -> J::Output;
-
-    fn by_look_ups<'s, M: Medium, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        stage: Stage<'s, C>,
+        volume: &'s SceneVolume<'s, M, C>,
+        Stage { lights, surfaces, .. }: Stage<'s, C>,
         unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        let shadow = self.transport().shadow.by_look_ups(unlawful);
-        let shadow = shadow.ok_or_else(|| needs_closed_form("estimator.kind: regular"))?;
-        Ok(self.with(volume, stage, shadow, job))
-    }
-
-    fn by_closed_form<'s, M: LineThickness, P: PhaseFunction, C: Spectrum, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        stage: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> J::Output {
-        self.with(volume, stage, self.transport().shadow.by_closed_form(unlawful), job)
-    }
-
-    fn with<'s, M: Medium, P: PhaseFunction, C: Spectrum, T: RayTransmittance<M>, J: IntegratorJob<C>>(
-        &'s self,
-        volume: &'s Volume<M, P, C>,
-        stage: Stage<'s, C>,
-        shadow: T,
-        job: J,
-    ) -> J::Output {
-        let Stage { lights, surfaces, .. } = stage;
-        if M::IS_EMPTY {
-            // A scene with neither is a rare one, and needs no code of its own.
-            self.run(World::new(volume, surfaces, lights), stage, shadow, job)
-        } else if Geometry::surfaces(surfaces).is_empty() {
-            self.run(World::new(volume, &NoSurfaces, lights), stage, shadow, job)
+    ) -> AnyIntegrator<'s, C> {
+        // One with neither surfaces nor a medium is rare, and needs no code of its own.
+        if !M::IS_EMPTY && Geometry::surfaces(surfaces).is_empty() {
+            self.among(World::<Seen<'s, M, C, _>>::new(volume, &NoSurfaces, lights), unlawful)
         } else {
-            self.run(World::new(volume, surfaces, lights), stage, shadow, job)
+            self.among(World::<Seen<'s, M, C, _>>::new(volume, surfaces, lights), unlawful)
         }
     }
-}
 
-impl AmongSurfaces for PathTracerPlan {
-    fn transport(&self) -> &TransportPlan {
-        &self.transport
-    }
-    fn run<'s, W: Types<Sampling = SpaceSampling<'s>>, J: IntegratorJob<W::Spectrum>>(
+    fn among<'s, W>(
         &'s self,
         world: World<'s, W>,
-        _stage: Stage<'s, W::Spectrum>,
-        shadow: W::Shadow,
-        job: J,
-    ) -> J::Output {
-        let TransportPlan { walk, heuristic, .. } = &self.transport;
-        let tracer = PathTracer::new(world, walk.walk(), shadow, *heuristic);
-        job.run(tracer.with_max_vertices(self.max_vertices))
+        unlawful: &'s Cell<Option<Unlawful>>,
+    ) -> AnyIntegrator<'s, W::Spectrum>
+    where
+        W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's,
+    {
+        let TransportPlan { walk, shadow, heuristic } = &self.transport;
+        let tracer = PathTracer::new(world, walk.walk(), shadow.worker(unlawful), *heuristic);
+        counting(tracer.with_max_vertices(self.max_vertices), |tracer| Counts::cut(tracer.truncated()))
     }
 }
 
-impl AmongSurfaces for VplPlan {
-    fn transport(&self) -> &TransportPlan {
-        &self.transport
+impl VplPlan {
+    pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
+        &'s self,
+        volume: &'s SceneVolume<'s, M, C>,
+        stage: Stage<'s, C>,
+        unlawful: &'s Cell<Option<Unlawful>>,
+    ) -> AnyIntegrator<'s, C> {
+        let Stage { lights, surfaces, .. } = stage;
+        // One with neither surfaces nor a medium is rare, and needs no code of its own.
+        if !M::IS_EMPTY && Geometry::surfaces(surfaces).is_empty() {
+            self.among(World::<Seen<'s, M, C, _>>::new(volume, &NoSurfaces, lights), stage, unlawful)
+        } else {
+            self.among(World::<Seen<'s, M, C, _>>::new(volume, surfaces, lights), stage, unlawful)
+        }
     }
-    fn run<'s, W: Types<Sampling = SpaceSampling<'s>>, J: IntegratorJob<W::Spectrum>>(
+
+    fn among<'s, W>(
         &'s self,
         world: World<'s, W>,
         stage: Stage<'s, W::Spectrum>,
-        shadow: W::Shadow,
-        job: J,
-    ) -> J::Output {
-        let TransportPlan { walk, heuristic, .. } = &self.transport;
+        unlawful: &'s Cell<Option<Unlawful>>,
+    ) -> AnyIntegrator<'s, W::Spectrum>
+    where
+        W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's,
+    {
+        let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let (component, term) = match self.component {
             ComponentSpec::All => (Component::All, Term::Bounded(stage.bound)),
             ComponentSpec::Connections => (Component::Connections, Term::Bounded(stage.bound)),
             ComponentSpec::Correction => (Component::Correction, Term::Bounded(stage.bound)),
             ComponentSpec::Lost => (Component::Connections, Term::Excess(stage.bound)),
         };
-        let gather =
-            Gather { world, vpls: stage.vpls, term, heuristic: *heuristic, walk: walk.walk(), shadow };
+        let (walk, shadow) = (walk.walk(), shadow.worker(unlawful));
+        let gather = Gather { world, vpls: stage.vpls, term, heuristic: *heuristic, walk, shadow };
         let (correction, pairing) = match self.compensation {
             None => (AnyCorrection::None, Pairing::Every),
             Some(options) => {
@@ -269,7 +229,10 @@ impl AmongSurfaces for VplPlan {
             }
         };
         let integrator = VplIntegrator::new(gather, (self.eye_samples, pairing), correction);
-        job.run(integrator.component(component))
+        counting(integrator.component(component), |integrator| {
+            let (compensation_tried, compensation_inside) = integrator.correction().vertices();
+            Counts { truncated: integrator.truncated(), compensation_tried, compensation_inside }
+        })
     }
 }
 
@@ -295,20 +258,12 @@ impl<W: Types> Correction<W> for AnyCorrection<'_> {
     }
 }
 
-impl<W: Types> TileIntegrator<W::Spectrum> for PathTracer<'_, W> {
-    fn truncated(&self) -> u64 {
-        Self::truncated(self)
-    }
-}
-
-impl<W: Types> TileIntegrator<W::Spectrum> for VplIntegrator<'_, W, AnyCorrection<'_>> {
-    fn truncated(&self) -> u64 {
-        Self::truncated(self)
-    }
-    fn compensation_vertices(&self) -> (u64, u64) {
-        match self.correction() {
-            AnyCorrection::None => (0, 0),
-            AnyCorrection::Compensation(compensation) => compensation.vertices(),
+impl AnyCorrection<'_> {
+    /// Compensation vertices that were tried, and those that counted.
+    fn vertices(&self) -> (u64, u64) {
+        match self {
+            Self::None => (0, 0),
+            Self::Compensation(compensation) => compensation.vertices(),
         }
     }
 }

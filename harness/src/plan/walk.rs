@@ -1,12 +1,12 @@
 //! Walks through a medium, with their sampling extinction in space.
 
 use crate::Failure;
-use crate::field::{AnyMedium, MediumJob};
+use crate::field::AnyMedium;
 use crate::spec::{SamplingFieldSpec, WalkSpec};
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
-use fairflight_media::{Bounds, Line, LineThickness, Medium, PhaseFunction};
+use fairflight_media::{Bounds, Line, Medium, PhaseFunction};
 use fairflight_paths::{
-    Criticality, Grid, GridError, SamplingExtinction, Uniform, Walk, grows_nowhere, second_moment_growth,
+    Criticality, Grid, SamplingExtinction, Uniform, Walk, grows_nowhere, second_moment_growth,
 };
 use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::{Seeded, derive_seed};
@@ -59,8 +59,8 @@ impl WalkPlan {
             }
             SamplingFieldSpec::Grid { cells, factor, floor } => {
                 let cells = cells.map(|count| count as usize);
-                let fit = Fit { bounds, cells, shape: (PROBES, factor, floor) };
-                Field::Grid(Box::new(medium.with(fit).map_err(|error| refuse(&error))?))
+                let grid = Grid::fitted(medium, bounds, cells, (PROBES, factor, floor));
+                Field::Grid(Box::new(grid.map_err(|error| refuse(&error))?))
             }
         };
         let WalkSpec { version, max_collisions, allow_supercritical, .. } = *spec;
@@ -151,21 +151,5 @@ impl SamplingExtinction for SpaceSampling<'_> {
             Self::Uniform(uniform) => uniform.lowest(),
             Self::Grid(grid) => grid.lowest(),
         }
-    }
-}
-
-struct Fit<'a> {
-    bounds: &'a Bounds,
-    cells: [usize; 3],
-    shape: (u32, f64, f64),
-}
-
-impl MediumJob for Fit<'_> {
-    type Output = Result<Grid, GridError>;
-    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output {
-        Grid::fitted(medium, self.bounds, self.cells, self.shape)
-    }
-    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
-        self.by_look_ups(medium)
     }
 }

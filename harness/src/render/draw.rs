@@ -1,20 +1,20 @@
 //! A pass over an image in parallel, the same one whatever the number of threads.
 
+use super::batch::Batch;
 use super::canvas::{Canvas, Spent};
-use super::tile::{AddSamples, Tile};
-use super::virtual_lights::Batch;
-use crate::estimator::Unlawful;
-use crate::field::MediumJob;
-use crate::plan::{AnyPhase, IntegratorJob, IntegratorPlan, Radiant, ScenePlan, Stage, TileIntegrator};
+use super::tile::{Added, Tile};
+use crate::field::{AnyMedium, OnlyLookUps};
+use crate::plan::{Counts, IntegratorPlan, Radiant, ScenePlan, SceneVolume, Stage, TileIntegrator};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
-use fairflight_media::{LineThickness, Medium, Observed};
+use fairflight_media::{EmptySpace, LineThickness, Medium, Observed};
 use fairflight_scene::{Spectrum, Volume};
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What is drawn: shared by all workers.
+#[derive(Clone, Copy)]
 pub(super) struct Draw<'a, C> {
     pub plan: &'a ScenePlan,
     pub radiant: &'a Radiant<C>,
@@ -23,59 +23,72 @@ pub(super) struct Draw<'a, C> {
     pub advance: &'a (dyn Fn(u64) + Sync),
 }
 
-/// Adds a pass of `samples` samples per pixel to a canvas.
-///
-/// Passes continue the streams of the pixels and their moments: one of n samples gives the same bits as n of one sample, for
-/// integrators that carry nothing from ray to ray.
-pub(super) struct AddPass<'a, C> {
-    pub draw: Draw<'a, C>,
-    pub canvas: &'a mut Canvas<C>,
-    pub samples: u32,
-}
+/// Work with the integrator of one tile.
+pub(super) type Work<'a, C> = dyn FnMut(&mut dyn TileIntegrator<C>) -> Result<Added, Failure> + 'a;
 
-/// How the integrator of a tile comes about, in one pass over a medium.
+/// A scene compiled for its medium.
 ///
 /// An integrator whose pixels share what is prepared for a pass (virtual point lights, say) says so in
-/// [`IntegratorPlan::draws_in_batches`]: its passes then are of one sample per pixel, and the variance of the image's mean comes from
-/// the means of the passes.
-pub(super) trait Pass<M: Medium, C: Spectrum>: Sync {
-    /// What all tiles of a pass share.
-    type Batch: Sync;
-
-    /// Prepares pass number `pass`, from 0, on the threads of the current pool: all its variates are those of (`draw.seed`, `pass`).
+/// [`IntegratorPlan::draws_in_batches`](crate::plan::IntegratorPlan::draws_in_batches): its passes then are of one sample per pixel, and
+/// the variance of the image's mean comes from the means of the passes.
+pub(super) trait Scene<C>: Sync {
+    /// Prepares what all tiles of pass number `pass`, from 0, share, on the threads of the current pool: all its variates are those of the
+    /// seed and `pass`.
     ///
     /// # Errors
     /// If a look-up is not lawful.
-    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Self::Batch, Spent), Failure>;
+    fn prepare(&self, pass: usize) -> Result<(Batch<C>, Spent), Failure>;
 
-    /// Does a job with an integrator of one tile.
+    /// Does the work of one tile with the integrator of the scene; what it met is judged afterwards. Gives the sum of the samples, and the
+    /// cost.
     ///
     /// # Errors
-    /// If the integrator does not fit medium or lights.
-    fn integrate<'s, J: IntegratorJob<C>>(
-        &'s self,
-        batch: &'s Self::Batch,
-        volume: &'s ObservedVolume<'_, M, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure>;
+    /// If the integrator does not fit the scene, a look-up is not lawful, or the work fails.
+    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(f64, Spent), Failure>;
 }
 
-/// Integrators that need nothing but look-ups.
-struct ByLookUps<'a, C>(&'a IntegratorPlan, &'a Radiant<C>);
+/// A scene whose medium has the type M.
+struct In<'a, M, C> {
+    draw: Draw<'a, C>,
+    medium: M,
+}
 
-/// The same on a medium whose optical thickness has a closed form.
-struct ByClosedForm<'a, C>(&'a IntegratorPlan, &'a Radiant<C>);
+impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
+    fn prepare(&self, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
+        let Self { draw, medium } = self;
+        match &draw.plan.integrator {
+            IntegratorPlan::Vpl(plan) => draw.virtual_lights(*medium, plan, pass),
+            // In empty space nothing is scattered towards the camera.
+            IntegratorPlan::PhotonTracer(walk) if !M::IS_EMPTY => draw.photons(*medium, walk),
+            _ => Ok((Batch::none(), Spent::default())),
+        }
+    }
 
-/// What is prepared for a pass of any integrator.
-fn prepare<M: Medium + Sync, C: Spectrum>(
-    draw: &Draw<'_, C>,
-    medium: &M,
-    pass: usize,
-) -> Result<(Batch<C>, Spent), Failure> {
-    match &draw.plan.integrator {
-        IntegratorPlan::Vpl(plan) => draw.virtual_lights(medium, plan, pass),
-        _ => Ok((Batch::none(), Spent::default())),
+    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(f64, Spent), Failure> {
+        let Self { draw, medium } = self;
+        let clock = ThreadTime::now();
+        let volume = draw.volume(*medium);
+        let unlawful = Cell::new(None);
+        let integrator = draw.plan.integrator.on(&volume, batch.stage(draw.radiant), &unlawful);
+        let added = integrator.and_then(|mut integrator| work(&mut *integrator));
+        // Before the samples: a look-up that is not finite explains a sample that is not.
+        draw.judge(&volume.medium)?;
+        if let Some(unlawful) = unlawful.get() {
+            return Err(draw.plan.integrator.explain(unlawful));
+        }
+        let Added { sum, counts } = added?;
+        let cpu_seconds = clock.elapsed().as_secs_f64();
+        let Counts { truncated, compensation_tried, compensation_inside } = counts;
+        let lookups = volume.medium.lookups();
+        let spent = Spent {
+            lookups,
+            cpu_seconds,
+            truncated,
+            compensation_tried,
+            compensation_inside,
+            ..Spent::default()
+        };
+        Ok((sum, spent))
     }
 }
 
@@ -86,110 +99,71 @@ impl<C> Batch<C> {
     }
 }
 
-impl<M: Medium + Sync, C: Spectrum> Pass<M, C> for ByLookUps<'_, C> {
-    type Batch = Batch<C>;
-
-    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
-        prepare(draw, medium, pass)
-    }
-
-    fn integrate<'s, J: IntegratorJob<C>>(
-        &'s self,
-        batch: &'s Batch<C>,
-        volume: &'s ObservedVolume<'_, M, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        self.0.by_look_ups(volume, batch.stage(self.1), unlawful, job)
-    }
-}
-
-impl<M: LineThickness + Sync, C: Spectrum> Pass<M, C> for ByClosedForm<'_, C> {
-    type Batch = Batch<C>;
-
-    fn prepare(&self, draw: &Draw<'_, C>, medium: &M, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
-        prepare(draw, medium, pass)
-    }
-
-    fn integrate<'s, J: IntegratorJob<C>>(
-        &'s self,
-        batch: &'s Batch<C>,
-        volume: &'s ObservedVolume<'_, M, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-        job: J,
-    ) -> Result<J::Output, Failure> {
-        self.0.by_closed_form(volume, batch.stage(self.1), unlawful, job)
-    }
-}
-
-impl<C: Spectrum> MediumJob for AddPass<'_, C> {
-    type Output = Result<(), Failure>;
-
-    fn by_look_ups<M: Medium + Sync>(self, medium: &M) -> Self::Output {
-        let pass = ByLookUps(&self.draw.plan.integrator, self.draw.radiant);
-        self.add(medium, &pass)
-    }
-
-    fn by_closed_form<M: LineThickness + Sync>(self, medium: &M) -> Self::Output {
-        let pass = ByClosedForm(&self.draw.plan.integrator, self.draw.radiant);
-        self.add(medium, &pass)
-    }
-}
-
-/// An integrator that could be built.
-struct Fits;
-
-impl<C> IntegratorJob<C> for Fits {
-    type Output = ();
-    fn run<I: TileIntegrator<C>>(self, _integrator: I) {}
-}
-
 /// What draws a tile: the sum of its samples, and what they cost.
 type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> Result<(f64, Spent), Failure> + Sync + 'a;
 
 /// The volume of a tile, observed.
-pub(super) type ObservedVolume<'a, M, C> = Volume<Observed<&'a M>, &'a AnyPhase, C>;
+pub(super) type ObservedVolume<'a, M, C> = SceneVolume<'a, Observed<M>, C>;
 
-impl<C: Spectrum> AddPass<'_, C> {
+impl<'a, C: Spectrum> Draw<'a, C> {
+    /// Adds a pass of `samples` samples per pixel to a canvas.
+    ///
+    /// Passes continue the streams of the pixels and their moments: one of n samples gives the same bits as n of one sample, for
+    /// integrators that carry nothing from ray to ray.
+    ///
     /// # Errors
     /// If a look-up is not lawful, or a sample not finite: that of the first tile where it happens. The canvas is then of no use.
-    fn add<M: Medium + Sync>(self, medium: &M, pass: &impl Pass<M, C>) -> Result<(), Failure> {
-        let Self { draw, canvas, samples } = self;
-        let integrator = &draw.plan.integrator;
+    pub(super) fn add_pass(self, canvas: &mut Canvas<C>, samples: u32) -> Result<(), Failure> {
+        self.add(&*self.compiled(), canvas, samples)
+    }
+
+    /// The scene compiled for its medium.
+    fn compiled(self) -> Box<dyn Scene<C> + 'a> {
+        match &self.plan.medium {
+            AnyMedium::Empty => self.within(EmptySpace),
+            AnyMedium::Homogeneous(medium) => self.within(&**medium),
+            AnyMedium::AnalyticCosine(medium) => self.within(&**medium),
+            AnyMedium::Perlin(medium) => self.within(OnlyLookUps(&**medium)),
+            AnyMedium::Expression(medium) => self.within(OnlyLookUps(&**medium)),
+            AnyMedium::Voxels(medium) => self.within(&**medium),
+        }
+    }
+
+    fn within<M: LineThickness + Copy + Sync + 'a>(self, medium: M) -> Box<dyn Scene<C> + 'a> {
+        Box::new(In { draw: self, medium })
+    }
+
+    fn add(self, scene: &dyn Scene<C>, canvas: &mut Canvas<C>, samples: u32) -> Result<(), Failure> {
+        let integrator = &self.plan.integrator;
         debug_assert!(samples == 1 || !integrator.draws_in_batches(), "a batch is for one sample per pixel");
         let number = canvas.pass_means.len();
-        let (batch, spent) = pass.prepare(&draw, medium, number)?;
-        canvas.cost = canvas.cost.and(spent);
         if number == 0 {
-            // Whether they fit together is known before the first tile.
-            pass.integrate(&batch, &draw.volume(medium), &Cell::new(None), Fits)?;
-            canvas.warning = draw.check_growth(medium)?;
+            // Whether they fit together is known before anything is drawn.
+            scene.integrate(&Batch::none(), &mut |_| Ok(Added::default()))?;
+            canvas.warning = self.check_growth()?;
         }
+        let (batch, spent) = scene.prepare(number)?;
+        canvas.cost = canvas.cost.and(spent);
         let (seed, drawn) = (canvas.seed, canvas.samples);
-        let added = draw.tiles(&mut canvas.tiles, samples, &|tile| {
-            let job = AddSamples { camera: &draw.plan.camera, tile, drawn, samples, seed };
-            draw.tile(medium, |volume, unlawful| pass.integrate(&batch, volume, unlawful, job)?)
+        let camera = &self.plan.camera;
+        let added = self.tiles(&mut canvas.tiles, samples, &|tile| {
+            scene.integrate(&batch, &mut |integrator| {
+                tile.add_samples(integrator, camera, (drawn, samples, seed))
+            })
         })?;
         let mut sum = 0.0;
         for (of_tile, spent) in added {
             sum += of_tile;
             canvas.cost = canvas.cost.and(spent);
         }
-        let [columns, rows] = draw.plan.camera.resolution().map(f64::from);
+        let [columns, rows] = camera.resolution().map(f64::from);
         canvas.pass_means.push(sum / (columns * rows * f64::from(samples)));
         canvas.samples += samples;
-        // In empty space nothing is scattered towards the camera.
-        if !M::IS_EMPTY
-            && let IntegratorPlan::PhotonTracer(walk) = integrator
-        {
-            canvas.photons = Some(draw.photons(medium, walk)?);
-        }
+        canvas.photons = batch.photons;
         Ok(())
     }
-}
 
-impl<C: Spectrum> Draw<'_, C> {
-    pub(super) fn volume<'a, M: Medium>(&'a self, medium: &'a M) -> ObservedVolume<'a, M, C> {
+    pub(super) fn volume<M: Medium>(&self, medium: M) -> ObservedVolume<'a, M, C> {
         Volume {
             medium: Observed::new(medium),
             bounds: self.plan.bounds,
@@ -199,9 +173,10 @@ impl<C: Spectrum> Draw<'_, C> {
     }
 
     /// Whether the walks of the integrator have a second moment. Its look-ups are not part of the cost: it is a diagnosis.
-    fn check_growth<M: Medium>(&self, medium: &M) -> Result<Option<String>, Failure> {
-        let Some(walk) = self.plan.integrator.walk().filter(|_| !M::IS_EMPTY) else { return Ok(None) };
-        let volume = self.volume(medium);
+    fn check_growth(&self) -> Result<Option<String>, Failure> {
+        let is_empty = matches!(self.plan.medium, AnyMedium::Empty);
+        let Some(walk) = self.plan.integrator.walk().filter(|_| !is_empty) else { return Ok(None) };
+        let volume = self.volume(&self.plan.medium);
         let growth = walk.check_growth(&volume, self.seed);
         // Where walks are not defined they do not grow either.
         self.judge(&volume.medium)?;
@@ -225,38 +200,6 @@ impl<C: Spectrum> Draw<'_, C> {
             self.plan.integrator.admits((lowest, highest), self.radiant.albedo.max_channel())?;
         }
         Ok(())
-    }
-
-    /// One tile on an observed medium; what was met is judged afterwards. Gives the sum of the samples, and the cost.
-    fn tile<M: Medium>(
-        &self,
-        medium: &M,
-        draw: impl FnOnce(
-            &ObservedVolume<'_, M, C>,
-            &Cell<Option<Unlawful>>,
-        ) -> Result<super::tile::Added, Failure>,
-    ) -> Result<(f64, Spent), Failure> {
-        let clock = ThreadTime::now();
-        let volume = self.volume(medium);
-        let unlawful = Cell::new(None);
-        let added = draw(&volume, &unlawful);
-        // Before the samples: a look-up that is not finite explains a sample that is not.
-        self.judge(&volume.medium)?;
-        if let Some(unlawful) = unlawful.get() {
-            return Err(self.plan.integrator.explain(unlawful));
-        }
-        let added = added?;
-        let cpu_seconds = clock.elapsed().as_secs_f64();
-        let (compensation_tried, compensation_inside) = added.compensation;
-        let spent = Spent {
-            lookups: volume.medium.lookups(),
-            cpu_seconds,
-            truncated: added.truncated,
-            compensation_tried,
-            compensation_inside,
-            ..Spent::default()
-        };
-        Ok((added.sum, spent))
     }
 
     /// All tiles; what comes of them in their order. One copy for all integrators: a call per tile costs nothing.
@@ -299,44 +242,33 @@ mod tests {
     use crate::plan::Spectra;
     use crate::render::canvas::MeanVariance;
     use crate::spec::{SceneOverrides, SceneSpec};
-    use fairflight_media::{EmptySpace, Line};
-    use fairflight_paths::Integrator;
+    use fairflight_media::Line;
     use fairflight_sources::{Seeded, UniformSource};
 
     /// Sees the number of the batch, and one variate of the pixel.
     struct Shows(f64);
 
-    impl Integrator<f64> for Shows {
-        fn radiance(&mut self, _line: &Line, source: &mut impl UniformSource) -> f64 {
+    impl TileIntegrator<f64> for Shows {
+        fn radiance(&mut self, _line: &Line, source: &mut Seeded) -> f64 {
             self.0 + 1e-3 * (source.next_uniform() - 0.5)
         }
-    }
-
-    impl TileIntegrator<f64> for Shows {
-        fn truncated(&self) -> u64 {
-            2
+        fn counts(&self) -> Counts {
+            Counts { truncated: 2, ..Counts::default() }
         }
     }
 
-    /// A batch is one number.
+    /// A batch is one number, in the place of the bound.
     struct Numbers;
 
-    impl<M: Medium> Pass<M, f64> for Numbers {
-        type Batch = f64;
-
-        fn prepare(&self, draw: &Draw<'_, f64>, _: &M, pass: usize) -> Result<(f64, Spent), Failure> {
-            let number = Seeded::for_batch(draw.seed, pass as u64).next_uniform();
-            Ok((number, Spent { lookups: 7, ..Spent::default() }))
+    impl Scene<f64> for Numbers {
+        fn prepare(&self, pass: usize) -> Result<(Batch<f64>, Spent), Failure> {
+            let number = Seeded::for_batch(5, pass as u64).next_uniform();
+            Ok((Batch { bound: number, ..Batch::none() }, Spent { lookups: 7, ..Spent::default() }))
         }
 
-        fn integrate<'s, J: IntegratorJob<f64>>(
-            &'s self,
-            batch: &'s f64,
-            _: &'s ObservedVolume<'_, M, f64>,
-            _: &'s Cell<Option<Unlawful>>,
-            job: J,
-        ) -> Result<J::Output, Failure> {
-            Ok(job.run(Shows(*batch)))
+        fn integrate(&self, batch: &Batch<f64>, work: &mut Work<'_, f64>) -> Result<(f64, Spent), Failure> {
+            let Added { sum, counts } = work(&mut Shows(batch.bound))?;
+            Ok((sum, Spent { truncated: counts.truncated, ..Spent::default() }))
         }
     }
 
@@ -349,7 +281,7 @@ mod tests {
         let mut canvas = Canvas::new(plan.camera.resolution(), 5);
         for _ in 0..3 {
             let draw = Draw { plan: &plan, radiant, seed: 5, advance: &|_| () };
-            AddPass { draw, canvas: &mut canvas, samples: 1 }.add(&EmptySpace, &Numbers).unwrap();
+            draw.add(&Numbers, &mut canvas, 1).unwrap();
         }
         let batches = [0, 1, 2].map(|pass| Seeded::for_batch(5, pass).next_uniform());
         for (mean, batch) in canvas.pass_means.iter().zip(batches) {

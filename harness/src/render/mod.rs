@@ -4,6 +4,7 @@
 //! passes the files are put in place now and then, with statistics that say that the image is not finished: somebody may watch it, and
 //! a kill leaves the last one. An interrupt ends such an image after a whole pass.
 
+mod batch;
 mod canvas;
 mod draw;
 mod output;
@@ -73,13 +74,13 @@ pub(crate) fn run(
     // Before there is a file, and until all are in place: who interrupts gets what is done.
     let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
     let reference = reference(arguments, &plan)?;
-    let job = Job { name, spec, media, reference, plan, exposure: OnceLock::new(), environment };
+    let rendering = Rendering { name, spec, media, reference, plan, exposure: OnceLock::new(), environment };
     outputs.prepare()?;
 
     let (painted, (image, statistics), exposure) = environment.on_threads(arguments.threads, || {
-        let painted = job.paint(early.as_ref(), &mut outputs)?;
-        let finished = job.finished(&painted)?;
-        Ok((painted, finished, job.exposure(&outputs)?))
+        let painted = rendering.paint(early.as_ref(), &mut outputs)?;
+        let finished = rendering.finished(&painted)?;
+        Ok((painted, finished, rendering.exposure(&outputs)?))
     })?;
     for warning in &statistics.warnings {
         let _ = writeln!(stderr, "warning: {warning}");
@@ -109,7 +110,7 @@ fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Im
 }
 
 /// What is to be rendered, and compared with what.
-struct Job<'a> {
+struct Rendering<'a> {
     name: String,
     spec: SceneSpec,
     media: MediumLibrary,
@@ -120,7 +121,7 @@ struct Job<'a> {
     environment: &'a Environment,
 }
 
-impl Job<'_> {
+impl Rendering<'_> {
     /// Draws the image; unfinished ones go to `outputs`.
     fn paint(&self, early: Option<&EarlyEnd>, outputs: &mut Outputs) -> Result<Painted<'_>, Failure> {
         let plan = &self.plan;
@@ -212,18 +213,26 @@ mod tests {
         plan.samples_per_pixel = 2;
         let [width, height] = plan.camera.resolution().map(|side| side as usize);
         let environment = Environment::new(&[], Host::default());
-        let job = |value: f32| {
+        let rendering = |value: f32| {
             let reference = Image::new(width, height, vec![[value; 3]; width * height]);
             let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
             let reference = Some((reference, "reference.pfm".to_owned()));
             let (spec, media, exposure) = (spec.clone(), MediumLibrary::default(), OnceLock::new());
-            Job { name: String::new(), spec, media, plan, reference, exposure, environment: &environment }
+            Rendering {
+                name: String::new(),
+                spec,
+                media,
+                plan,
+                reference,
+                exposure,
+                environment: &environment,
+            }
         };
         let mut painting = Painting::new(&plan);
         painting.add_pass(&|_| ()).unwrap();
         // It is dark, the reference is not.
-        assert_eq!(job(0.25).error(&painting).unwrap(), "rendering, RMSE 2.500e-1");
-        assert_eq!(job(0.0).error(&painting).unwrap(), "rendering, RMSE 0.000e0");
-        assert_eq!(Job { reference: None, ..job(0.0) }.error(&painting), None);
+        assert_eq!(rendering(0.25).error(&painting).unwrap(), "rendering, RMSE 2.500e-1");
+        assert_eq!(rendering(0.0).error(&painting).unwrap(), "rendering, RMSE 0.000e0");
+        assert_eq!(Rendering { reference: None, ..rendering(0.0) }.error(&painting), None);
     }
 }

@@ -1,7 +1,7 @@
 //! The image of a plan, in as many channels as it has, pass by pass.
 
 use super::canvas::{Canvas, Drawn};
-use super::draw::{AddPass, Draw};
+use super::draw::Draw;
 use super::statistics::Moments;
 use crate::Failure;
 use crate::plan::{IntegratorPlan, Radiant, ScenePlan, Spectra};
@@ -103,8 +103,7 @@ fn add<C: Spectrum>(
     samples: u32,
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<(), Failure> {
-    let draw = Draw { plan, radiant, seed: canvas.seed, advance };
-    plan.medium.with(AddPass { draw, canvas, samples })
+    Draw { plan, radiant, seed: canvas.seed, advance }.add_pass(canvas, samples)
 }
 
 /// Draws the image of a plan on the threads of the current pool. `advance` is told how many samples were added.

@@ -1,5 +1,6 @@
 //! Photons: all pixels at once, in independent replicas of the whole image.
 
+use super::batch::Batch;
 use super::canvas::{Drawn, MeanVariance, Spent};
 use super::draw::Draw;
 use crate::plan::WalkPlan;
@@ -31,7 +32,6 @@ pub(super) struct PhotonLayer<C> {
     pixels: Vec<(C, C)>,
     /// The variance of the image's mean that pixels share; `None` for one replica.
     shared_variance: Option<f64>,
-    cost: Spent,
 }
 
 impl<C: Spectrum> PhotonLayer<C> {
@@ -41,22 +41,22 @@ impl<C: Spectrum> PhotonLayer<C> {
             pixel.add_independent(mean, variance);
         }
         drawn.mean_variance = MeanVariance::OfPixels { shared: self.shared_variance };
-        drawn.cost = drawn.cost.and(self.cost);
     }
 }
 
 impl<C: Spectrum> Draw<'_, C> {
-    /// The light of scattered photons.
+    /// The light of scattered photons, and what it cost.
     ///
     /// # Errors
     /// If a look-up is not lawful, or a contribution not finite: that of the first replica where it happens.
-    pub(super) fn photons<M: Medium + Sync>(
+    pub(super) fn photons<M: Medium + Copy + Sync>(
         &self,
-        medium: &M,
+        medium: M,
         walk: &WalkPlan,
-    ) -> Result<PhotonLayer<C>, Failure> {
+    ) -> Result<(Batch<C>, Spent), Failure> {
         let count = REPLICAS.min(self.plan.samples_per_pixel);
-        self.layer(count, &|index| self.replica(medium, walk, index, count))
+        let (layer, spent) = self.layer(count, &|index| self.replica(medium, walk, index, count))?;
+        Ok((Batch { photons: Some(layer), ..Batch::none() }, spent))
     }
 
     /// All replicas, put together. One copy for all media.
@@ -64,7 +64,7 @@ impl<C: Spectrum> Draw<'_, C> {
         &self,
         count: u32,
         replica: &(dyn Fn(u32) -> Result<Replica<C>, Failure> + Sync),
-    ) -> Result<PhotonLayer<C>, Failure> {
+    ) -> Result<(PhotonLayer<C>, Spent), Failure> {
         let replicas: Vec<Result<Replica<C>, Failure>> = (0..count).into_par_iter().map(replica).collect();
         let replicas = replicas.into_iter().collect::<Result<Vec<_>, Failure>>()?;
         let samples = f64::from(self.plan.samples_per_pixel);
@@ -93,12 +93,12 @@ impl<C: Spectrum> Draw<'_, C> {
             image_means.iter().zip(&weights).map(|(m, n)| n * (m - mean).powi(2) * share).sum();
         let shared_variance = (count > 1).then(|| variance / (n * n * samples));
         let cost = replicas.iter().fold(Spent::default(), |cost, replica| cost.and(replica.cost));
-        Ok(PhotonLayer { pixels, shared_variance, cost })
+        Ok((PhotonLayer { pixels, shared_variance }, cost))
     }
 
     fn replica<M: Medium>(
         &self,
-        medium: &M,
+        medium: M,
         walk: &WalkPlan,
         index: u32,
         count: u32,

@@ -2,7 +2,7 @@
 
 use super::pixel::Pixel;
 use crate::Failure;
-use crate::plan::{IntegratorJob, TileIntegrator};
+use crate::plan::{Counts, TileIntegrator};
 use fairflight_scene::{Camera, Spectrum};
 use fairflight_sources::{Seeded, UniformSource};
 
@@ -74,50 +74,22 @@ impl<C: Spectrum> Tile<C> {
         areas(resolution).into_iter().map(tile).collect()
     }
 
-    /// Copies the pixels to where they are in an image of so many columns.
-    pub(super) fn copy_to(&self, image: &mut [Pixel<C>], columns: u32) {
-        let Area { columns: [left, _], rows: [top, _] } = self.area;
-        for (row, line) in (top..).zip(self.pixels.chunks_exact(self.area.width())) {
-            let start = row as usize * columns as usize + left as usize;
-            image[start..start + line.len()].copy_from_slice(line);
-        }
-    }
-}
-
-/// Adds samples to the pixels of a tile.
-pub(super) struct AddSamples<'a, C> {
-    pub camera: &'a Camera,
-    pub tile: &'a mut Tile<C>,
-    /// The number of samples that each pixel has, and how many are added.
-    pub drawn: u32,
-    pub samples: u32,
-    pub seed: u64,
-}
-
-/// What was added to a tile.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Added {
-    /// The sum of all samples, in the mean of their channels.
-    pub sum: f64,
-    /// Walks that were cut.
-    pub truncated: u64,
-    /// Compensation vertices that were tried, and those that counted.
-    pub compensation: (u64, u64),
-}
-
-impl<C: Spectrum> IntegratorJob<C> for AddSamples<'_, C> {
-    type Output = Result<Added, Failure>;
-
-    fn run<I: TileIntegrator<C>>(self, mut integrator: I) -> Self::Output {
-        let Self { camera, tile: Tile { area, pixels, sources }, drawn, samples, seed } = self;
+    /// Adds `samples` samples to each pixel, which has `drawn` of them.
+    ///
+    /// # Errors
+    /// If a sample is not finite.
+    pub(super) fn add_samples(
+        &mut self,
+        integrator: &mut dyn TileIntegrator<C>,
+        camera: &Camera,
+        (drawn, samples, seed): (u32, u32, u64),
+    ) -> Result<Added, Failure> {
         let mut sum = 0.0;
-        for (position, (kept, stream)) in area.positions().zip(pixels.iter_mut().zip(sources)) {
-            // In registers while they change.
-            let (mut pixel, mut source) = (*kept, stream.clone());
+        let pixels = self.pixels.iter_mut().zip(&mut self.sources);
+        for (position, (pixel, source)) in self.area.positions().zip(pixels) {
             for i in 0..samples {
                 let within = [source.next_uniform(), source.next_uniform()];
-                let line = camera.ray(position, within);
-                let radiance = integrator.radiance(&line, &mut source);
+                let radiance = integrator.radiance(&camera.ray(position, within), source);
                 if !radiance.is_finite() {
                     let [column, row] = position;
                     return Err(Failure::refused(format!(
@@ -129,11 +101,27 @@ impl<C: Spectrum> IntegratorJob<C> for AddSamples<'_, C> {
                 sum += radiance.mean();
                 pixel.push(radiance);
             }
-            (*kept, *stream) = (pixel, source);
         }
-        let (truncated, compensation) = (integrator.truncated(), integrator.compensation_vertices());
-        Ok(Added { sum, truncated, compensation })
+        Ok(Added { sum, counts: integrator.counts() })
     }
+
+    /// Copies the pixels to where they are in an image of so many columns.
+    pub(super) fn copy_to(&self, image: &mut [Pixel<C>], columns: u32) {
+        let Area { columns: [left, _], rows: [top, _] } = self.area;
+        for (row, line) in (top..).zip(self.pixels.chunks_exact(self.area.width())) {
+            let start = row as usize * columns as usize + left as usize;
+            image[start..start + line.len()].copy_from_slice(line);
+        }
+    }
+}
+
+/// What was added to a tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Added {
+    /// The sum of all samples, in the mean of their channels.
+    pub sum: f64,
+    /// Events of the integrator.
+    pub counts: Counts,
 }
 
 #[cfg(test)]

@@ -1,32 +1,17 @@
 //! A set of virtual point lights for each pass.
 
+use super::batch::Batch;
 use super::canvas::Spent;
 use super::draw::Draw;
-use crate::plan::{SpaceSampling, VplPlan};
+use crate::plan::{Seen, VplPlan};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
-use fairflight_media::Medium;
-use fairflight_paths::transport::{MadeOf, World};
+use fairflight_media::LineThickness;
+use fairflight_paths::transport::World;
 use fairflight_scene::{Geometry, NoSurfaces, Spectrum};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_vpl::{Emitters, KeepNear, Ledger, LightPaths, Vpl};
 use rayon::prelude::*;
-
-/// What all tiles of a pass share.
-#[derive(Clone, Debug)]
-pub(super) struct Batch<C> {
-    /// None for an integrator that does not gather.
-    pub vpls: Vec<Vpl<C>>,
-    /// The bound of their geometric term \[1/length²\].
-    pub bound: f64,
-}
-
-impl<C> Batch<C> {
-    /// Nothing is shared.
-    pub(super) fn none() -> Self {
-        Self { vpls: Vec::new(), bound: f64::INFINITY }
-    }
-}
 
 /// The streams of sets are children of this child of the seed: no pixel has its number.
 const LIGHT_STREAM: u64 = u64::MAX - 2;
@@ -48,32 +33,29 @@ impl<C: Spectrum> Draw<'_, C> {
     ///
     /// # Errors
     /// If a look-up is not lawful, or nothing that could be gathered is ever deposited.
-    pub(super) fn virtual_lights<M: Medium + Sync>(
+    pub(super) fn virtual_lights<M: LineThickness + Copy + Sync>(
         &self,
-        medium: &M,
+        medium: M,
         plan: &VplPlan,
         pass: usize,
     ) -> Result<(Batch<C>, Spent), Failure> {
         let surfaces = &self.radiant.surfaces;
-        if M::IS_EMPTY {
-            self.among(surfaces, medium, plan, pass)
-        } else if surfaces.surfaces().is_empty() {
+        if !M::IS_EMPTY && surfaces.surfaces().is_empty() {
             self.among(&NoSurfaces, medium, plan, pass)
         } else {
             self.among(surfaces, medium, plan, pass)
         }
     }
 
-    fn among<G: Geometry<C> + Sync, M: Medium + Sync>(
+    fn among<G: Geometry<C> + Sync, M: LineThickness + Copy + Sync>(
         &self,
         surfaces: &G,
-        medium: &M,
+        medium: M,
         plan: &VplPlan,
         pass: usize,
     ) -> Result<(Batch<C>, Spent), Failure> {
         let volume = self.volume(medium);
-        let world =
-            World::<MadeOf<_, _, _, _, SpaceSampling<'_>>>::new(&volume, surfaces, &self.radiant.lights);
+        let world = World::<Seen<'_, _, _, _>>::new(&volume, surfaces, &self.radiant.lights);
         let observer = self.plan.camera.origin();
         let emitters = Emitters::new(&self.radiant.lights, surfaces, world.enclosing_ball(), observer);
         let bound = plan.bound(self.radiant, &self.plan.phase, emitters.power().max_channel())?;
@@ -98,14 +80,14 @@ impl<C: Spectrum> Draw<'_, C> {
         }
         let vpls = set.vpls;
         let spent = Spent { vpls: vpls.len() as u64, ..set.spent };
-        Ok((Batch { vpls, bound }, spent))
+        Ok((Batch { vpls, bound, ..Batch::none() }, spent))
     }
 
     /// Traces light paths in chunks with streams of their own, put together in order.
-    fn light_paths<G: Geometry<C> + Sync, M: Medium + Sync>(
+    fn light_paths<G: Geometry<C> + Sync, M: LineThickness + Copy + Sync>(
         &self,
         surfaces: &G,
-        medium: &M,
+        medium: M,
         plan: &VplPlan,
         emitters: &Emitters<C>,
         (stream, paths, share): (u64, u32, f64),
@@ -115,8 +97,7 @@ impl<C: Spectrum> Draw<'_, C> {
             interrupt::check()?;
             let clock = ThreadTime::now();
             let volume = self.volume(medium);
-            let world =
-                World::<MadeOf<_, _, _, _, SpaceSampling<'_>>>::new(&volume, surfaces, &self.radiant.lights);
+            let world = World::<Seen<'_, _, _, _>>::new(&volume, surfaces, &self.radiant.lights);
             let tracer = LightPaths::new(world, emitters, plan.transport.walk.walk()).keeping_near(keep_near);
             let mut source = Seeded::for_batch(stream, u64::from(index));
             let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());

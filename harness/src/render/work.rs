@@ -16,7 +16,7 @@ use crate::spec::{
     IntegratorSpec, LineSplittingSpec, SceneSpec, SingleScatteringSpec, TransmittanceSpec, VplSpec,
 };
 use crate::{Failure, interrupt};
-use fairflight_media::Bounds;
+use fairflight_media::{Bounds, Medium};
 use fairflight_paths::SamplingExtinction;
 use fairflight_vpl::Vpl;
 use glam::DVec3;

@@ -6,7 +6,7 @@ use crate::field::AnyProfile;
 use crate::field::{AnalyticCosineSpec, MediumKind, PerlinSpec};
 use crate::report::document::Volume;
 use crate::report::run::Run;
-use fairflight_media::{Bounds, PerlinParameters, PiecewiseConstant, Tolerance};
+use fairflight_media::{Bounds, Medium, PerlinParameters, PiecewiseConstant, Tolerance};
 use fairflight_sources::{Seeded, UniformSource};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! One ray taken apart: szirmay-kalos-2017 fig. 5.
 
 use super::laws::SharedLaws;
-use super::walk::{Trace, WALK_EXPLORERS, distances, looked_up, walker};
+use super::walk::{WALK_EXPLORERS, distances, looked_up, trace, walker};
 use super::{Run, Study, Subject};
 use crate::Failure;
 use crate::report::result::Anatomy;
@@ -17,7 +17,7 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
     let walker = walker(subject, WALK_EXPLORERS, sigma_samp)?;
     let control = walker.control();
     let source = Seeded::new(run.seed(subject, Study::Anatomy, 0));
-    let walk = subject.profile.with(Trace { walker: &walker, walks: 1, source }).remove(0);
+    let walk = trace(subject, &walker, 1, source).remove(0);
     let running = laws.running(subject, control, sigma_samp);
     let s = distances(subject.facts.length, POINTS);
     Ok(Anatomy {

@@ -1,7 +1,7 @@
 //! Sample transmittance functions with the band of their standard deviation: szirmay-kalos-2017 fig. 8.
 
 use super::laws::SharedLaws;
-use super::walk::{Trace, WALK_EXPLORERS, distances, walker};
+use super::walk::{WALK_EXPLORERS, distances, trace, walker};
 use super::{Run, Study, Subject};
 use crate::Failure;
 use crate::report::result::SampleFunctions;
@@ -18,7 +18,7 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
     let sigma_samp = subject.walk_sampling;
     let walker = walker(subject, WALK_EXPLORERS, sigma_samp)?;
     let source = Seeded::new(run.seed(subject, Study::Functions, 0));
-    let walks = subject.profile.with(Trace { walker: &walker, walks: FUNCTIONS, source });
+    let walks = trace(subject, &walker, FUNCTIONS, source);
     let running = laws.running(subject, walker.control(), sigma_samp);
     let s = distances(subject.facts.length, POINTS);
     let main: Vec<f64> = s.iter().map(|&s| (-walker.control().optical_thickness(0.0, s)).exp()).collect();

@@ -2,10 +2,10 @@
 
 use super::Subject;
 use crate::Failure;
-use crate::field::{Field, FieldJob, KnownField};
+use crate::field::KnownField;
 use fairflight_collision::DoubleParticle;
 use fairflight_media::Constant;
-use fairflight_sources::UniformSource;
+use fairflight_sources::Seeded;
 use fairflight_transmittance::{Explorers, Interaction, Tracking, TransmittanceFunction};
 
 /// Explorer points of the walks that are shown one by one (fig. 5 and 8).
@@ -31,27 +31,20 @@ pub(super) fn looked_up(subject: &Subject, distances: &[f64]) -> Vec<f64> {
     distances.iter().map(|&s| subject.profile.field().sigma_t(s)).collect()
 }
 
-/// `walks` walks from one source: their interaction points.
-pub(super) struct Trace<'a, S> {
-    pub(super) walker: &'a Walker,
-    pub(super) walks: usize,
-    pub(super) source: S,
-}
-
-impl<S: UniformSource> FieldJob for Trace<'_, S> {
-    type Output = Vec<Vec<Interaction>>;
-    fn run<F: KnownField>(mut self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
-        (0..self.walks)
-            .map(|_| {
-                let mut walk = Vec::new();
-                TransmittanceFunction::<F>::trace(self.walker, field, &mut self.source, &mut walk);
-                walk
-            })
-            .collect()
-    }
+/// The interaction points of `walks` walks from one source.
+pub(super) fn trace(
+    subject: &Subject,
+    walker: &Walker,
+    walks: usize,
+    mut source: Seeded,
+) -> Vec<Vec<Interaction>> {
+    let field = subject.profile.field();
+    let one = |_| {
+        let mut walk = Vec::new();
+        TransmittanceFunction::<&dyn KnownField>::trace(walker, &field, &mut source, &mut walk);
+        walk
+    };
+    (0..walks).map(one).collect()
 }
 
 /// `count` equidistant distances from 0 to `length`, both included.

@@ -7,11 +7,11 @@
 
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
-use crate::field::{Field, FieldJob, KnownField};
+use crate::field::KnownField;
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::study::Subject;
 use crate::report::study::laws::SharedLaws;
-use crate::report::study::walk::{Trace, WALK_EXPLORERS, Walker, walker};
+use crate::report::study::walk::{WALK_EXPLORERS, Walker, trace, walker};
 use fairflight_media::{Extinction, OpticalThickness};
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::Interaction;
@@ -107,7 +107,7 @@ fn coverage(evidence: &Evidence<'_>, subject: &Subject) -> Result<Vec<Coverage>,
     let walk_nanoseconds = sigma_samp * length * subject.lookup_nanoseconds + 100.0;
     let walks = ((evidence.run.effort.claim_seconds * 1e9 / walk_nanoseconds) as usize).clamp(2_000, 1 << 16);
     let seed = |i: u64| evidence.seed(10, (subject.index << 8) + i);
-    let traced = subject.profile.with(Trace { walker: &walker, walks, source: Seeded::new(seed(0xff)) });
+    let traced = trace(subject, &walker, walks, Seeded::new(seed(0xff)));
     let points = places
         .par_iter()
         .zip(PLACES)
@@ -116,8 +116,8 @@ fn coverage(evidence: &Evidence<'_>, subject: &Subject) -> Result<Vec<Coverage>,
             let within =
                 traced.iter().filter(|walk| place.holds(Interaction::weight_at(walk, place.s))).count();
             let draws = walks;
-            let source = Seeded::new(seed(i as u64));
-            let by_law = subject.profile.with(Unordered { walker: &walker, place, draws, source });
+            let by_law =
+                unordered(subject.profile.field(), &walker, (place, draws), Seeded::new(seed(i as u64)));
             Coverage {
                 place: at,
                 measured: within as f64 / walks as f64,
@@ -130,35 +130,26 @@ fn coverage(evidence: &Evidence<'_>, subject: &Subject) -> Result<Vec<Coverage>,
     Ok(points)
 }
 
-/// How many of `draws` products over a Poisson number of independent uniform points lie within the band.
-struct Unordered<'a> {
-    walker: &'a Walker,
-    place: &'a Place,
-    draws: usize,
-    source: Seeded,
-}
-
-impl FieldJob for Unordered<'_> {
-    type Output = usize;
-    fn run<F: KnownField>(mut self, field: &F) -> usize
-    where
-        for<'a> &'a F: Field,
-    {
-        let Self { walker, place, draws, .. } = self;
-        let expected = walker.sampling().optical_thickness(0.0, place.s);
-        let control = walker.control();
-        (0..draws)
-            .filter(|_| {
-                let mut weight = 1.0;
-                let mut depth = self.source.next_exponential();
-                while depth < expected {
-                    let s = place.s * self.source.next_uniform();
-                    // Eq. 8: the transmitted energy of one collision is 1 − r.
-                    weight *= 1.0 - (field.sigma_t(s) - control.sigma_t(s)) / walker.sampling().sigma_t(s);
-                    depth += self.source.next_exponential();
-                }
-                place.holds(weight)
-            })
-            .count()
-    }
+/// The number of `draws` products over a Poisson number of independent uniform points that lie within the band.
+fn unordered(
+    field: &dyn KnownField,
+    walker: &Walker,
+    (place, draws): (&Place, usize),
+    mut source: Seeded,
+) -> usize {
+    let expected = walker.sampling().optical_thickness(0.0, place.s);
+    let control = walker.control();
+    (0..draws)
+        .filter(|_| {
+            let mut weight = 1.0;
+            let mut depth = source.next_exponential();
+            while depth < expected {
+                let s = place.s * source.next_uniform();
+                // Eq. 8: the transmitted energy of one collision is 1 − r.
+                weight *= 1.0 - (field.sigma_t(s) - control.sigma_t(s)) / walker.sampling().sigma_t(s);
+                depth += source.next_exponential();
+            }
+            place.holds(weight)
+        })
+        .count()
 }

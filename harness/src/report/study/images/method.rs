@@ -1,7 +1,7 @@
 //! What one pixel does with its share of the look-ups.
 
 use super::borrowed::{Borrowed, PixelRay};
-use crate::field::{Field, FieldJob, KnownField};
+use crate::field::KnownField;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Bounded, Constant, Counted, Domain, Extinction, FieldError, OpticalThickness, PiecewiseLinear, Vacuum,
@@ -71,12 +71,12 @@ impl Domain for Below {
     }
 }
 
-impl FieldJob for Estimate<'_> {
-    type Output = Result<Pixel, PixelError>;
-    fn run<F: KnownField>(self, field: &F) -> Self::Output
-    where
-        for<'a> &'a F: Field,
-    {
+impl Estimate<'_> {
+    /// Draws the estimates of the pixel on its ray.
+    ///
+    /// # Errors
+    /// If a parameter of the method is not lawful.
+    pub(super) fn draw(self, field: &dyn KnownField) -> Result<Pixel, PixelError> {
         let Self { method, rays, source, borrowed, ray } = self;
         let limit = if let Method::Woodcock { majorant } = method { majorant } else { f64::INFINITY };
         let looked_up = Counted::new(Watched::new(field, Below(limit)));

@@ -80,7 +80,7 @@ fn one(
     let in_image = |reason: &dyn std::fmt::Display| {
         Failure::refused(format!("report: image of {}, pixel {number}: {reason}", scene.subject.id))
     };
-    let pixel = profile.with(estimate).map_err(|error| in_image(&error))?;
+    let pixel = estimate.draw(profile.field()).map_err(|error| in_image(&error))?;
     if let Some(violation) = pixel.violation {
         let place = profile.place(violation.s);
         return Err(in_image(&format!("sigma_t = {} is not lawful at {place}", violation.sigma_t)));

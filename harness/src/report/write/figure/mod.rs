@@ -35,30 +35,30 @@ pub(crate) struct Finished {
     pub(crate) drawing: Drawing,
 }
 
-type Job<'a> = Box<dyn Fn() -> Result<Finished, String> + Send + Sync + 'a>;
+type Drawing<'a> = Box<dyn Fn() -> Result<Finished, String> + Send + Sync + 'a>;
 
 /// All figures, in the order of the page, drawn in parallel.
 pub(crate) fn all(report: &Report) -> Result<Vec<Finished>, String> {
-    let jobs: Vec<Job<'_>> = report.media.iter().flat_map(of_medium).collect();
-    jobs.par_iter().map(|job| job()).collect()
+    let drawings: Vec<Drawing<'_>> = report.media.iter().flat_map(of_medium).collect();
+    drawings.par_iter().map(|drawing| drawing()).collect()
 }
 
-fn of_medium(medium: &MediumReport) -> Vec<Job<'_>> {
-    let mut jobs: Vec<Job<'_>> = sweep::albedos(medium)
+fn of_medium(medium: &MediumReport) -> Vec<Drawing<'_>> {
+    let mut drawings: Vec<Drawing<'_>> = sweep::albedos(medium)
         .into_iter()
-        .map(|albedo| job(medium, variance::Variance { medium, albedo }))
+        .map(|albedo| drawing(medium, variance::Variance { medium, albedo }))
         .collect();
-    jobs.push(job(medium, lookups::Lookups { medium }));
-    jobs.push(job(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Lookups }));
-    jobs.push(job(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Seconds }));
-    jobs.push(job(medium, convergence::Convergence { medium, cost: convergence::Cost::Lookups }));
-    jobs.push(job(medium, convergence::Convergence { medium, cost: convergence::Cost::Seconds }));
-    jobs.push(job(medium, anatomy::AnatomyFigure { medium }));
-    jobs.push(job(medium, functions::Functions { medium }));
-    jobs
+    drawings.push(drawing(medium, lookups::Lookups { medium }));
+    drawings.push(drawing(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Lookups }));
+    drawings.push(drawing(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Seconds }));
+    drawings.push(drawing(medium, convergence::Convergence { medium, cost: convergence::Cost::Lookups }));
+    drawings.push(drawing(medium, convergence::Convergence { medium, cost: convergence::Cost::Seconds }));
+    drawings.push(drawing(medium, anatomy::AnatomyFigure { medium }));
+    drawings.push(drawing(medium, functions::Functions { medium }));
+    drawings
 }
 
-fn job<'a>(medium: &'a MediumReport, figure: impl Figure + Send + 'a) -> Job<'a> {
+fn drawing<'a>(medium: &'a MediumReport, figure: impl Figure + Send + 'a) -> Drawing<'a> {
     Box::new(move || {
         let named = |error: String| format!("figure {}: {error}", figure.id());
         Ok(Finished {

@@ -1,0 +1,22 @@
+//! What all tiles of a pass share.
+
+use super::photons::PhotonLayer;
+use fairflight_vpl::Vpl;
+
+/// What is prepared for a pass, and shared by all its tiles.
+#[derive(Clone, Debug)]
+pub(super) struct Batch<C> {
+    /// None for an integrator that does not gather.
+    pub vpls: Vec<Vpl<C>>,
+    /// The bound of their geometric term \[1/length²\].
+    pub bound: f64,
+    /// Light that is not drawn pixel by pixel.
+    pub photons: Option<PhotonLayer<C>>,
+}
+
+impl<C> Batch<C> {
+    /// Nothing is shared.
+    pub(super) fn none() -> Self {
+        Self { vpls: Vec::new(), bound: f64::INFINITY, photons: None }
+    }
+}
