@@ -216,7 +216,7 @@ fn no_type_is_a_job() {
     for folder in ["crates", "harness", "tests"] {
         for (path, text) in sources(folder) {
             let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
-            let mut jobs = words.filter(|word| word.ends_with("Job") && *word != "Job");
+            let mut jobs = words.filter(|word| word.len() > 3 && word.ends_with("Job"));
             assert_eq!(jobs.next(), None, "{}", path.display());
         }
     }

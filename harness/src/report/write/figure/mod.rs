@@ -35,30 +35,30 @@ pub(crate) struct Finished {
     pub(crate) drawing: Drawing,
 }
 
-type Drawing<'a> = Box<dyn Fn() -> Result<Finished, String> + Send + Sync + 'a>;
+type Painter<'a> = Box<dyn Fn() -> Result<Finished, String> + Send + Sync + 'a>;
 
 /// All figures, in the order of the page, drawn in parallel.
 pub(crate) fn all(report: &Report) -> Result<Vec<Finished>, String> {
-    let drawings: Vec<Drawing<'_>> = report.media.iter().flat_map(of_medium).collect();
-    drawings.par_iter().map(|drawing| drawing()).collect()
+    let painters: Vec<Painter<'_>> = report.media.iter().flat_map(of_medium).collect();
+    painters.par_iter().map(|painter| painter()).collect()
 }
 
-fn of_medium(medium: &MediumReport) -> Vec<Drawing<'_>> {
-    let mut drawings: Vec<Drawing<'_>> = sweep::albedos(medium)
+fn of_medium(medium: &MediumReport) -> Vec<Painter<'_>> {
+    let mut painters: Vec<Painter<'_>> = sweep::albedos(medium)
         .into_iter()
-        .map(|albedo| drawing(medium, variance::Variance { medium, albedo }))
+        .map(|albedo| painter(medium, variance::Variance { medium, albedo }))
         .collect();
-    drawings.push(drawing(medium, lookups::Lookups { medium }));
-    drawings.push(drawing(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Lookups }));
-    drawings.push(drawing(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Seconds }));
-    drawings.push(drawing(medium, convergence::Convergence { medium, cost: convergence::Cost::Lookups }));
-    drawings.push(drawing(medium, convergence::Convergence { medium, cost: convergence::Cost::Seconds }));
-    drawings.push(drawing(medium, anatomy::AnatomyFigure { medium }));
-    drawings.push(drawing(medium, functions::Functions { medium }));
-    drawings
+    painters.push(painter(medium, lookups::Lookups { medium }));
+    painters.push(painter(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Lookups }));
+    painters.push(painter(medium, efficiency::Efficiency { medium, cost: efficiency::Cost::Seconds }));
+    painters.push(painter(medium, convergence::Convergence { medium, cost: convergence::Cost::Lookups }));
+    painters.push(painter(medium, convergence::Convergence { medium, cost: convergence::Cost::Seconds }));
+    painters.push(painter(medium, anatomy::AnatomyFigure { medium }));
+    painters.push(painter(medium, functions::Functions { medium }));
+    painters
 }
 
-fn drawing<'a>(medium: &'a MediumReport, figure: impl Figure + Send + 'a) -> Drawing<'a> {
+fn painter<'a>(medium: &'a MediumReport, figure: impl Figure + Send + 'a) -> Painter<'a> {
     Box::new(move || {
         let named = |error: String| format!("figure {}: {error}", figure.id());
         Ok(Finished {
