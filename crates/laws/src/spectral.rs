@@ -56,7 +56,7 @@ impl<F: SpectralOpticalThickness<N>, E: SpectralFreeFlight<F, N>, const N: usize
 ///
 /// # Errors
 /// If a look-up or a flight is not lawful: a law says nothing then.
-pub fn check<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usize>(
+pub fn check<F: SpectralExtinction<N>, E, const N: usize>(
     field: &F,
     sampler: &E,
     wavelength: usize,
@@ -64,6 +64,7 @@ pub fn check<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usi
     run: Run,
 ) -> Result<FlightEvidence, FlightRefusal>
 where
+    E: SpectralFreeFlight<F, N>,
     for<'a> E: SpectralFreeFlight<ObservedSpectrum<'a, F, E>, N>,
 {
     let observed = ObservedSpectrum::new(field, sampler);

@@ -121,8 +121,8 @@ impl<'a, C: Spectrum> Draw<'a, C> {
     fn compiled(self) -> Box<dyn Scene<C> + 'a> {
         match &self.plan.medium {
             AnyMedium::Empty => self.within(EmptySpace),
-            AnyMedium::Homogeneous(medium) => self.within(&**medium),
-            AnyMedium::AnalyticCosine(medium) => self.within(&**medium),
+            AnyMedium::Homogeneous(medium) => self.within(**medium),
+            AnyMedium::AnalyticCosine(medium) => self.within(**medium),
             AnyMedium::Perlin(medium) => self.within(OnlyLookUps(&**medium)),
             AnyMedium::Expression(medium) => self.within(OnlyLookUps(&**medium)),
             AnyMedium::Voxels(medium) => self.within(&**medium),

@@ -115,8 +115,9 @@ where
         self.check("shared_distance", Weights::Any, SharedDistance::new(self.constant(sampling)))
     }
 
-    fn check<E: Send + Sync + 'static>(&self, name: &str, weights: Weights, sampler: E) -> Check
+    fn check<E>(&self, name: &str, weights: Weights, sampler: E) -> Check
     where
+        E: Send + Sync + 'static,
         for<'f> E: ClosedForm<Wavelength<&'f F, N>> + SpectralFreeFlight<F, N>,
         for<'f> E: SpectralFreeFlight<ObservedSpectrum<'f, F, E>, N>,
     {

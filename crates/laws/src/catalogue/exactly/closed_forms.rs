@@ -83,8 +83,9 @@ fn inverse<F: SpecimenField + OpticalThickness, E: FreeFlight<F> + Send + Sync +
 }
 
 /// The closed variance of an estimator that scores on the way, below and above the field, against its renewal equation.
-fn variance<E: Copy + Send + Sync + 'static>(kind: &str, name: &str, scoring: Scoring, estimator: E) -> Check
+fn variance<E>(kind: &str, name: &str, scoring: Scoring, estimator: E) -> Check
 where
+    E: Copy + Send + Sync + 'static,
     for<'f> E: ClosedForm<&'f Bounded<PiecewiseLinear>> + ClosedForm<&'f Bounded<PiecewiseConstant>>,
 {
     check(&format!("variance of {kind}/{name}"), kind, "kinks and steps", move || {
