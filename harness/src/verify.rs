@@ -3,7 +3,8 @@
 use crate::cli::VerifyArguments;
 use crate::result::{Provenance, number};
 use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
-use fairflight_laws::{Check, CheckResult, Effort, FAMILY_LEVEL, FAMILY_SIZE, Kind, catalogue, check_level};
+use fairflight_catalogue::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, Kind, catalogue, check_level};
+use fairflight_laws::CheckResult;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -82,7 +82,7 @@ END {
     print ""
     print "Written by `tests/mutants/run table` from [tests/mutants](../tests/mutants): do not edit. A mutant is one small fault in one formula; the tests"
     print "must notice. Each meets the tests of its own crate (unit tests and `tests/` of the crate), what survives the checks without chance of"
-    print "`fairflight-laws` (`exact/…` and `collision/…` of `verify`), what survives these `tests/`. The stage that notices it counts once."
+    print "`fairflight-catalogue` and `fairflight-laws` (`exact/…` and `collision/…` of `verify`), what survives these `tests/`. The stage that notices it counts once."
     print "Intervals are those of Clopper and Pearson at 95 %."
     print ""
     print "## Scale faults"

@@ -2,7 +2,8 @@
 //!
 //! Here is what they share: the family of all checks, and where the repository is.
 
-use fairflight_laws::{Check, CheckResult, Effort, catalogue, check_level};
+use fairflight_catalogue::{Check, Effort, catalogue, check_level};
+use fairflight_laws::CheckResult;
 use std::path::PathBuf;
 
 /// The seed of every statistical test. Never changed to make one pass.

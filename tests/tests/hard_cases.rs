@@ -1,6 +1,7 @@
 //! Every hard case is right, or refused where it must be.
 
-use fairflight_laws::{Law, Run, hard_cases};
+use fairflight_catalogue::{Law, hard_cases};
+use fairflight_laws::Run;
 use fairflight_tests::{SEED, run_checks};
 
 #[test]

@@ -1,6 +1,6 @@
 //! Every check of the catalogue, at the N of a quick run, under one family-wise false alarm.
 
-use fairflight_laws::{FAMILY_SIZE, Kind, Law, catalogue};
+use fairflight_catalogue::{FAMILY_SIZE, Kind, Law, catalogue};
 use fairflight_tests::run_checks;
 
 /// Nothing fails, and nothing is silently untested: every check of the catalogue is testable at its quick N.
@@ -106,7 +106,7 @@ fn names_are_unique() {
 fn a_check_depends_on_its_seed_and_on_nothing_else() {
     let all = catalogue();
     let check = all.iter().find(|check| check.id == "constant/ratio_tracking").unwrap();
-    let run = |seed| check.run(fairflight_laws::Effort::Quick, seed, 1e-8);
+    let run = |seed| check.run(fairflight_catalogue::Effort::Quick, seed, 1e-8);
     assert_eq!(run(3), run(3));
     assert_ne!(run(3).mean_z, run(4).mean_z);
 }

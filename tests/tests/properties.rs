@@ -1,8 +1,8 @@
 //! Random piecewise media, controls, sampling extinctions and albedos: the moment formula gives exp(−τ), and simulation
 //! gives the moment formula. Deterministic: proptest's own fixed generator.
 
+use fairflight_catalogue::FAMILY_LEVEL;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
-use fairflight_laws::FAMILY_LEVEL;
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::check;
 use fairflight_laws::{Expectation, Run, Truth};

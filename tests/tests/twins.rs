@@ -1,6 +1,7 @@
 //! Every wrong twin is rejected, at the z that it states.
 
-use fairflight_laws::{Evident, Law, Run, check_level, twins};
+use fairflight_catalogue::{Evident, Law, check_level, twins};
+use fairflight_laws::Run;
 use fairflight_stats::normal::two_sided_quantile;
 use fairflight_tests::{SEED, run_checks};
 

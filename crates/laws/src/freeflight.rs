@@ -121,7 +121,8 @@ impl FlightExpectation {
     }
 
     /// Without a word on look-ups.
-    pub(crate) fn uncounted(&self) -> Self {
+    #[must_use]
+    pub fn uncounted(&self) -> Self {
         Self { lookups: None, ..self.clone() }
     }
 

@@ -83,7 +83,7 @@ impl CheckResult {
     /// The outcome of several verdicts that share one check: it holds if all do. Its numbers are those of the largest |z|, its
     /// power that of the weakest.
     #[must_use]
-    pub(crate) fn of_all(parts: impl IntoIterator<Item = (&'static str, Self)>) -> Self {
+    pub fn of_all(parts: impl IntoIterator<Item = (&'static str, Self)>) -> Self {
         let mut whole = Self::exact(true, "");
         let mut weakest = Some(0.0_f64);
         for (name, part) in parts {

@@ -24,7 +24,7 @@ impl Run {
     /// The same run with at least as many samples as the closed moments of `references` ask for at this `level` each: enough for
     /// their tests to hold it, and to find a bias of [`DETECTABLE`]. No seed enters.
     #[must_use]
-    pub(crate) fn sufficient_for(self, references: impl IntoIterator<Item = Reference>, level: f64) -> Self {
+    pub fn sufficient_for(self, references: impl IntoIterator<Item = Reference>, level: f64) -> Self {
         let needed = references
             .into_iter()
             .filter_map(|reference| samples_needed(&reference, level, DETECTABLE))

@@ -1,7 +1,8 @@
 //! The stability table: the hard cases, run.
 
 use super::result::StabilityRow;
-use fairflight_laws::{Run, hard_cases};
+use fairflight_catalogue::hard_cases;
+use fairflight_laws::Run;
 use fairflight_sources::derive_seed;
 use fairflight_stats::sidak_level;
 use rayon::prelude::*;

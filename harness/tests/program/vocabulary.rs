@@ -2,9 +2,9 @@
 
 use crate::common::harness;
 use boon::{Compiler, Schemas};
+use fairflight_catalogue::catalogue;
 use fairflight_harness::estimator::EstimatorSpec;
 use fairflight_harness::vocabulary::{schema, tables, things};
-use fairflight_laws::catalogue;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::fs;

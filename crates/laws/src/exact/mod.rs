@@ -19,7 +19,7 @@ use crate::CheckResult;
 
 /// The outcome of a comparison whose greatest relative deviation is `worst`, of which `granted` is rounding or quadrature.
 #[must_use]
-pub(crate) fn agree(worst: f64, granted: f64) -> CheckResult {
+pub fn agree(worst: f64, granted: f64) -> CheckResult {
     CheckResult {
         detectable_relative_bias: Some(granted),
         // No number agrees with none.
@@ -29,6 +29,6 @@ pub(crate) fn agree(worst: f64, granted: f64) -> CheckResult {
 
 /// The greatest of some deviations; NaN if one is.
 #[must_use]
-pub(crate) fn greatest(deviations: impl IntoIterator<Item = f64>) -> f64 {
+pub fn greatest(deviations: impl IntoIterator<Item = f64>) -> f64 {
     deviations.into_iter().fold(0.0, |worst: f64, next| if next.is_nan() { next } else { worst.max(next) })
 }

@@ -2,7 +2,8 @@
 
 use crate::report::document::{Cell, Section, Table};
 use crate::report::run::Run;
-use fairflight_laws::{Check, CheckResult, Effort, catalogue};
+use fairflight_catalogue::{Check, Effort, catalogue};
+use fairflight_laws::CheckResult;
 use fairflight_stats::sidak_level;
 use rayon::prelude::*;
 

@@ -1,0 +1,52 @@
+//! Checks without chance: decisions, densities, closed forms and connections, each by itself.
+
+mod closed_forms;
+mod connections;
+mod decisions;
+mod densities;
+mod variances;
+
+use super::{Check, Law};
+use fairflight_laws::CheckResult;
+
+/// The inputs of these checks are lawful: a constructor that refuses one is a bug here.
+const LAWFUL: &str = "the catalogue's exact inputs are lawful";
+
+/// Checks without chance, for the catalogue.
+pub(super) fn without_chance() -> Vec<Check> {
+    let mut checks = decisions::checks();
+    checks.extend(densities::checks());
+    checks.extend(closed_forms::checks());
+    checks.extend(variances::checks());
+    checks.extend(connections::checks());
+    checks
+}
+
+/// A check of this file that draws nothing.
+fn check(
+    name: &str,
+    estimator: &str,
+    medium: &str,
+    function: impl Fn() -> CheckResult + Send + Sync + 'static,
+) -> Check {
+    Check::new(format!("exact/{name}"), Law::Exact, estimator, medium, 0, move |_| function())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_chance;
+    use crate::Effort;
+
+    #[test]
+    fn all_hold_whatever_the_seed_and_each_sees_more_than_rounding() {
+        let mut broken = Vec::new();
+        for check in without_chance() {
+            let result = check.run(Effort::Quick, 1, 1e-9);
+            assert_eq!((result.samples, check.samples(Effort::Full)), (0, 0), "{}", check.id);
+            if result.holds != Some(true) {
+                broken.push(format!("{}: {}", check.id, result.reason));
+            }
+        }
+        assert!(broken.is_empty(), "{broken:#?}");
+    }
+}

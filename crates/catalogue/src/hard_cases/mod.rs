@@ -1,0 +1,177 @@
+//! Numerically hard inputs with their exact answers: right, or refused with a clear error.
+//!
+//! The numbers are those of the project's list of hard cases; several entries of one number are its several values. A case
+//! is evaluated deterministically wherever a set-up without variance exists, else by a short seeded run that the law
+//! judges.
+
+mod anisotropy;
+mod collisions;
+mod connections;
+mod far;
+mod heavy_tails;
+mod judging;
+mod refusals;
+mod signed;
+mod spectral;
+mod thickness;
+mod vacuum;
+mod variates;
+mod voxel_faces;
+
+use crate::Kind;
+use fairflight_laws::{CheckResult, Run};
+
+/// What came of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Our answer, or the text of the refusal.
+    pub ours: String,
+    /// Whether it is as it should be.
+    pub passes: bool,
+    /// Whether it is a refusal.
+    pub refused: bool,
+    /// What a judged run found: samples, scores, p-values and power. None for a case that is evaluated exactly.
+    pub evidence: CheckResult,
+}
+
+impl Outcome {
+    /// A value against the exact one, to a relative tolerance (absolute for an exact 0).
+    fn value(ours: f64, exact: f64, tolerance: f64) -> Self {
+        let granted = tolerance * if exact == 0.0 { 1.0 } else { exact.abs() };
+        // Equality first: it also covers a tolerance that underflows.
+        let passes = ours == exact || (ours - exact).abs() <= granted;
+        Self::said(passes, number(ours))
+    }
+
+    /// Something else than one value.
+    fn said(passes: bool, ours: impl Into<String>) -> Self {
+        Self { ours: ours.into(), passes, refused: false, evidence: CheckResult::default() }
+    }
+
+    /// A refusal, which is what was wanted.
+    fn refusal(text: impl std::fmt::Display) -> Self {
+        Self { refused: true, ..Self::said(true, format!("refused: {text}")) }
+    }
+
+    /// A run judged by its law.
+    fn judged(result: CheckResult, mean: f64) -> Self {
+        let z = result.mean_z.map_or(String::new(), |z| format!(", z = {z:.2}"));
+        let passes = result.holds == Some(true);
+        let ours = if passes { format!("{mean:.6}{z}") } else { format!("{mean:.6}{z}: {}", result.reason) };
+        Self { evidence: result, ..Self::said(passes, ours) }
+    }
+}
+
+/// A number with as many digits as tell it apart.
+fn number(value: f64) -> String {
+    if value != 0.0 && !(1e-4..1e6).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// A hard case: one row of the stability table.
+pub struct HardCase {
+    /// The number of its row in the list.
+    pub number: u32,
+    /// What is hard, with the value; unique together with the number.
+    pub title: String,
+    /// Which of ours is tried.
+    pub estimator: &'static str,
+    /// The kinds of estimator that it draws from.
+    pub kinds: Vec<Kind>,
+    /// The exact answer and how it is known.
+    pub exact: String,
+    /// How near is right.
+    pub tolerance: &'static str,
+    /// N of a judged run; 0 for a deterministic evaluation.
+    pub samples: u64,
+    function: Box<dyn Fn(Run) -> Outcome + Send + Sync>,
+}
+
+impl HardCase {
+    /// A deterministic case.
+    fn deterministic(
+        number: u32,
+        title: impl Into<String>,
+        estimator: &'static str,
+        exact: impl Into<String>,
+        tolerance: &'static str,
+        function: impl Fn() -> Outcome + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            number,
+            title: title.into(),
+            estimator,
+            kinds: Vec::new(),
+            exact: exact.into(),
+            tolerance,
+            samples: 0,
+            function: Box::new(move |_| function()),
+        }
+    }
+
+    /// A case judged over `samples` estimates.
+    fn statistical(
+        number: u32,
+        title: impl Into<String>,
+        estimator: &'static str,
+        exact: impl Into<String>,
+        samples: u64,
+        function: impl Fn(Run) -> Outcome + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            number,
+            title: title.into(),
+            estimator,
+            kinds: Vec::new(),
+            exact: exact.into(),
+            tolerance: "the law, at its share of the false alarm",
+            samples,
+            function: Box::new(function),
+        }
+    }
+
+    /// The same, about these kinds of estimator.
+    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
+        Self { kinds: kinds.into(), ..self }
+    }
+
+    /// Evaluates the case.
+    #[must_use]
+    pub fn run(&self, run: Run) -> Outcome {
+        (self.function)(run)
+    }
+}
+
+impl std::fmt::Debug for HardCase {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("HardCase")
+            .field("number", &self.number)
+            .field("title", &self.title)
+            .finish_non_exhaustive()
+    }
+}
+
+/// All hard cases of transmittance, of phase functions and of virtual point lights, by number.
+#[must_use]
+pub fn hard_cases() -> Vec<HardCase> {
+    let mut cases = vacuum::cases();
+    cases.extend(signed::cases());
+    cases.extend(collisions::cases());
+    cases.extend(thickness::cases());
+    cases.extend(voxel_faces::cases());
+    cases.extend(far::cases());
+    cases.extend(variates::cases());
+    cases.extend(refusals::cases());
+    cases.extend(heavy_tails::cases());
+    cases.extend(spectral::cases());
+    cases.extend(anisotropy::cases());
+    cases.extend(connections::cases());
+    cases.sort_by_key(|case| case.number);
+    cases
+}
+
+/// A case that builds something unlawful would be a bug of its own.
+const LAWFUL: &str = "the hard cases are lawful";

@@ -1,0 +1,23 @@
+//! What Fairflight proves of itself, as data: every law on every medium, wrong twins, hard cases.
+//!
+//! * [`catalogue()`]: all checks by name, what `verify` runs.
+//! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
+//! * [`hard_cases()`]: numerically hard inputs with their exact answers.
+//! * [`paths`]: the laws of walks in space: radiance against quadrature, slabs and closed forms.
+//! * [`vpl`]: the laws of virtual point lights: what bounding them takes away, and light among surfaces.
+//!
+//! The laws of estimators, free flights and phase functions are functions of `fairflight-laws`. Nothing here knows files, clocks,
+//! threads or plots. Every check is a function of its [`Run`](fairflight_laws::Run) alone, so that a caller may run many at once.
+
+mod checks;
+mod hard_cases;
+mod kind;
+mod twins;
+
+pub mod paths;
+pub mod vpl;
+
+pub use checks::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, Law, catalogue, check_level};
+pub use hard_cases::{HardCase, Outcome, hard_cases};
+pub use kind::Kind;
+pub use twins::{Evident, Rejection, Twin, twins};

@@ -1,0 +1,66 @@
+//! Mistakes with a majorant.
+
+use super::trial::{LAWFUL, judged_as_coin, theory_of};
+use super::{Evident, Rejection, Twin};
+use crate::Kind;
+use fairflight_laws::transmittance::Admitted;
+use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, Watched};
+use fairflight_sources::{Scripted, UniformSource};
+use fairflight_transmittance::{TransmittanceEstimator, Woodcock};
+
+/// The right flight, in a majorant that is none.
+struct TooLow(f64);
+
+impl<F: Extinction> TransmittanceEstimator<F> for TooLow {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+        let claimed = Bounded::new(field, self.0).expect(LAWFUL); // right: a value that sigma_t nowhere exceeds
+        Woodcock.estimate(&claimed, source)
+    }
+    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
+        true
+    }
+}
+
+/// raab-2008 algorithm 1 accepts a collision at `ratio ≥ rand()`.
+fn collides_as_printed(sigma_t: f64, majorant: f64, u: f64) -> bool {
+    sigma_t / majorant >= u // right: u < sigma_t / majorant
+}
+
+/// Lists the twins.
+pub(super) fn twins() -> Vec<Twin> {
+    vec![
+        // E = exp(−∫ min(σ_t, majorant)) = exp(−1.6) for exp(−2): (0.2019 − 0.1353)/sqrt(0.1353·0.8647/N).
+        Twin::new(
+            "woodcock",
+            "majorant_too_low",
+            "Woodcock tracking through a majorant below the maximum (a renderer's camera path: 0.368 in hard case 3)",
+            "sigma_t 0.5, 1.5 (length 1 each), majorant 1.1",
+            (50_000, Evident::Mean { z: 43.5 }),
+            |run| {
+                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.5, 1.5]).expect(LAWFUL);
+                let theory = theory_of(&field, &Woodcock, &[]);
+                let statistical = judged_as_coin(&field, &TooLow(1.1), theory, run);
+                // A watched run does not even need statistics: a first step of 1.5/1.1 ends where sigma_t is 1.5.
+                let claimed = Bounded::new(&field, 1.1).expect(LAWFUL);
+                let admitted = Admitted { field: claimed, estimator: Woodcock };
+                let watched = Watched::new(claimed, admitted);
+                Woodcock.estimate(&watched, &mut Scripted::new([-(-1.5_f64).exp_m1(), 0.0]));
+                Rejection { rejected: statistical.rejected && watched.violation().is_some(), ..statistical }
+            },
+        ).about([Kind::Woodcock]),
+        Twin::new(
+            "woodcock",
+            "collides_in_empty_space",
+            "ratio ≥ rand() for rand() < ratio (raab-2008 algorithm 1 as printed)",
+            "sigma_t 0, majorant 1, variate 0",
+            (0, Evident::Exactly),
+            |_| {
+                let empty = Bounded::new(Constant::new(0.0, 1.0).expect(LAWFUL), 1.0).expect(LAWFUL);
+                // A first step of ln 2 lies on the profile; the variate 0 decides about the collision; then out.
+                let ours = Woodcock.estimate(&empty, &mut Scripted::new([0.5, 0.0, 0.5]));
+                let rejected = ours == 1.0 && collides_as_printed(0.0, 1.0, 0.0);
+                Rejection::exact(rejected, "collides where there is nothing; ours goes on")
+            },
+        ).about([Kind::Woodcock]),
+    ]
+}

@@ -1,0 +1,135 @@
+//! Wrong twins: estimators with one line wrong, each a mistake that public code or a printed listing has made.
+//!
+//! A law that nothing can break tests nothing. Each statistical twin states its profile, its N and the |z| that it shows
+//! there, far above what is critical; each deterministic one is rejected by an exact assertion.
+
+mod cells;
+mod collision_weights;
+mod combs;
+mod control;
+mod exactly;
+mod freeflight;
+mod line_integral;
+mod logarithm;
+mod majorant;
+mod paths;
+mod phase;
+mod points;
+mod sampling;
+mod series;
+mod spectral;
+mod trial;
+mod variance;
+mod vpl;
+
+use crate::Kind;
+use fairflight_laws::Run;
+
+/// What a check said of a twin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rejection {
+    /// Whether it was rejected, as it should be.
+    pub rejected: bool,
+    /// The z-score of its mean, where it has one.
+    pub mean_z: Option<f64>,
+    /// That of its variance.
+    pub variance_z: Option<f64>,
+    /// Why, in words.
+    pub reason: String,
+}
+
+impl Rejection {
+    /// An exact assertion.
+    fn exact(rejected: bool, reason: impl Into<String>) -> Self {
+        Self { rejected, mean_z: None, variance_z: None, reason: reason.into() }
+    }
+}
+
+/// How a twin is found out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Evident {
+    /// By a wrong mean: the |z| expected at the stated N.
+    Mean {
+        /// (E\[twin\] − T)/standard error of the right estimator.
+        z: f64,
+    },
+    /// By a wrong variance: the |z| expected at the stated N.
+    Variance {
+        /// (right − wrong variance)/standard error of the wrong one.
+        z: f64,
+    },
+    /// By an exact assertion.
+    Exactly,
+}
+
+/// A wrong twin.
+pub struct Twin {
+    /// Unique.
+    pub id: &'static str,
+    /// The estimator that it is a twin of, in words.
+    pub of: &'static str,
+    /// The kind of that estimator, whose law rejects it; none for a twin of a flight, a phase function or an integrator.
+    pub kinds: Vec<Kind>,
+    /// The wrong line, and who wrote it.
+    pub mistake: &'static str,
+    /// Where it is tried.
+    pub profile: &'static str,
+    /// N; 0 for an exact assertion.
+    pub samples: u64,
+    /// How it is found out.
+    pub evident: Evident,
+    function: Box<dyn Fn(Run) -> Rejection + Send + Sync>,
+}
+
+impl Twin {
+    fn new(
+        of: &'static str,
+        id: &'static str,
+        mistake: &'static str,
+        profile: &'static str,
+        (samples, evident): (u64, Evident),
+        function: impl Fn(Run) -> Rejection + Send + Sync + 'static,
+    ) -> Self {
+        Self { of, kinds: Vec::new(), id, mistake, profile, samples, evident, function: Box::new(function) }
+    }
+
+    /// The same, about these kinds of estimator.
+    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
+        Self { kinds: kinds.into(), ..self }
+    }
+
+    /// Tries the twin.
+    #[must_use]
+    pub fn run(&self, run: Run) -> Rejection {
+        (self.function)(run)
+    }
+}
+
+impl std::fmt::Debug for Twin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Twin").field("id", &self.id).field("evident", &self.evident).finish_non_exhaustive()
+    }
+}
+
+/// All wrong twins.
+#[must_use]
+pub fn twins() -> Vec<Twin> {
+    let mut all = collision_weights::twins();
+    all.extend(cells::twins());
+    all.extend(control::twins());
+    all.extend(exactly::twins());
+    all.extend(freeflight::twins());
+    all.extend(spectral::twins());
+    all.extend(points::twins());
+    all.extend(majorant::twins());
+    all.extend(sampling::twins());
+    all.extend(line_integral::twins());
+    all.extend(series::twins());
+    all.extend(combs::twins());
+    all.extend(logarithm::twins());
+    all.extend(variance::twins());
+    all.extend(phase::twins());
+    all.extend(paths::twins());
+    all.extend(vpl::twins());
+    all
+}
