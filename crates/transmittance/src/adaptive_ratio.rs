@@ -76,7 +76,8 @@ impl<F: Majorant> TransmittanceEstimator<F> for AdaptiveRatio {
         let (mut x, mut rate) = (0.0, majorant);
         loop {
             let flight = source.next_exponential() / rate;
-            if x + flight >= length {
+            // A value of −inf makes the rate infinite, and the walk endless.
+            if x + flight >= length || rate == f64::INFINITY {
                 return weight.times_exp(exponent + (rate - majorant) * (length - x));
             }
             x += flight;
@@ -114,7 +115,7 @@ mod tests {
     use super::*;
     use crate::test_support::{agrees, seed_ray, theory_of};
     use approx::assert_relative_eq;
-    use fairflight_media::{Bounded, Constant, PiecewiseConstant};
+    use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant};
     use fairflight_sources::{Scripted, Seeded};
 
     /// The variate whose exponential is `depth`.
@@ -164,6 +165,25 @@ mod tests {
         assert!((theory.lookups - 13.90).abs() < 0.01, "{theory:?}");
         assert!(theory.relative_variance_error < 1e-6, "{theory:?}");
         agrees(&field, &estimator, 200_000, &mut Seeded::new(41));
+    }
+
+    #[test]
+    fn a_value_that_is_none_ends_the_walk_and_shows() {
+        struct Broken(f64);
+        impl Extinction for Broken {
+            fn sigma_t(&self, _: f64) -> f64 {
+                self.0
+            }
+            fn length(&self) -> f64 {
+                3.0
+            }
+        }
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let field = Bounded::new(Broken(value), 1.0).unwrap();
+            let script = Scripted::new([variate(0.5), variate(0.5), variate(9.0)]);
+            let estimate = AdaptiveRatio::new(0.1).unwrap().estimate(&field, &mut { script });
+            assert!(!estimate.is_finite(), "{value}: {estimate}");
+        }
     }
 
     #[test]

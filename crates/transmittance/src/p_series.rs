@@ -35,7 +35,7 @@ pub enum PSeriesVersion {
 /// by induction over k, but P_k are no numbers known beforehand. (4) `Ratio` is no sum: E over K of Π (1 − X/t_c) is
 /// exp(−t_c E\[X\]/t_c). Its points are those of ratio tracking with the rate t_c/S, unsorted: the same law.
 ///
-/// Where t_c = 0 the first three P_k vanish (not for `Cumulative`): admitted for σ_t = 0 only.
+/// Where t_c = 0 the first three P_k vanish (not for `Cumulative`): admitted for X = 0 only.
 ///
 /// **Moments.** `Ratio`: all, by [`ProductLaw`]. `Cumulative`: a bound of the variance. For the others the second moment is usually written as a
 /// double sum; here the variance, all of it positive terms. (5) Follow the expectation of the estimate given what is known.
@@ -180,7 +180,11 @@ impl PSeries {
         let mut term = self.first;
         let mut sum = term;
         for k in 1_u32.. {
-            term.multiply((self.pivot - Self::point(field, source)) / f64::from(k));
+            let point = Self::point(field, source);
+            if !point.is_finite() {
+                return f64::NAN; // its order would have no end
+            }
+            term.multiply((self.pivot - point) / f64::from(k));
             let go_on = term.over(&self.first).abs();
             if go_on < 1.0 {
                 if !happens(go_on, source) {
@@ -386,8 +390,8 @@ impl<F: Extinction> TransmittanceEstimator<F> for PSeries {
     }
 
     #[inline]
-    fn admits(&self, _field: &F, _s: f64, sigma_t: f64) -> bool {
-        self.version == PSeriesVersion::Cumulative || self.pivot > 0.0 || sigma_t == 0.0
+    fn admits(&self, field: &F, _s: f64, sigma_t: f64) -> bool {
+        self.version == PSeriesVersion::Cumulative || self.pivot > 0.0 || field.length() * sigma_t == 0.0
     }
 }
 

@@ -227,3 +227,30 @@ fn the_variance_of_the_cumulative_version_is_below_its_bound_and_not_far() {
     let theory = theory_of(&spike, &PSeries::new(Cumulative, 1.0).unwrap());
     assert!(theory.relative_variance_bound > 1e100);
 }
+
+#[test]
+fn a_value_that_is_none_ends_the_series_and_shows() {
+    struct Broken(f64);
+    impl Extinction for Broken {
+        fn sigma_t(&self, _: f64) -> f64 {
+            self.0
+        }
+        fn length(&self) -> f64 {
+            3.0
+        }
+    }
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let estimate = PSeries::new(Cumulative, 1.0).unwrap().estimate(&Broken(value), &mut Seeded::new(1));
+        assert!(estimate.is_nan(), "{value}: {estimate}");
+    }
+}
+
+#[test]
+fn a_profile_without_length_is_admitted_whatever_stands_there() {
+    let field = Constant::new(0.5, 0.0).unwrap();
+    for version in VERSIONS {
+        let series = PSeries::new(version, 0.0).unwrap();
+        assert!(series.admits(&field, 0.0, 0.5), "{version:?}");
+        assert_eq!(series.estimate(&field, &mut Seeded::new(1)), 1.0, "{version:?}");
+    }
+}
