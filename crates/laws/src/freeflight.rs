@@ -199,10 +199,11 @@ pub fn check<G: Extinction + Copy, E: FreeFlight<G> + FreeFlight<ObservedFlight<
 ) -> Result<FlightEvidence, FlightRefusal> {
     let observed = Counted::new(Watched::new(field, AdmittedFlight { field, sampler }));
     let lookups = || observed.lookups();
-    let measured = measure(|source| sampler.sample(&observed, source), expected, run, lookups)?;
+    let measured = measure(|source| sampler.sample(&observed, source), expected, run, lookups);
+    // Before what came of it: a weight that is no number has its reason there.
     match observed.field().violation() {
         Some(violation) => Err(FlightRefusal::Unlawful(violation)),
-        None => Ok(measured.judged(expected, run)),
+        None => Ok(measured?.judged(expected, run)),
     }
 }
 
@@ -334,6 +335,16 @@ mod tests {
         let longer = Constant::new(0.8, 9.0).unwrap();
         assert!(matches!(check(longer, Inversion, &expected, RUN), Err(FlightRefusal::Outside(_))));
         #[derive(Clone, Copy)]
+        struct Broken(f64);
+        impl Extinction for Broken {
+            fn sigma_t(&self, _s: f64) -> f64 {
+                self.0
+            }
+            fn length(&self) -> f64 {
+                2.0
+            }
+        }
+        #[derive(Clone, Copy)]
         struct Looks;
         impl<F: Extinction> FreeFlight<F> for Looks {
             fn sample(&self, field: &F, _source: &mut impl UniformSource) -> Flight {
@@ -343,8 +354,10 @@ mod tests {
                 sigma_t < 0.5
             }
         }
-        let field = Constant::new(0.8, 2.0).unwrap();
-        assert!(matches!(check(field, Looks, &expected, RUN), Err(FlightRefusal::Unlawful(_))));
+        for sigma_t in [0.8, f64::NAN] {
+            let field = Broken(sigma_t);
+            assert!(matches!(check(field, Looks, &expected, RUN), Err(FlightRefusal::Unlawful(_))));
+        }
     }
 
     #[test]

@@ -69,10 +69,10 @@ where
 {
     let observed = ObservedSpectrum::new(field, sampler);
     let sample = |source: &mut _| sampler.sample(&observed, source).of(wavelength);
-    let measured = measure(sample, expected, run, || observed.lookups.get())?;
+    let measured = measure(sample, expected, run, || observed.lookups.get());
     match observed.violation.get() {
         Some(violation) => Err(FlightRefusal::Unlawful(violation)),
-        None => Ok(measured.judged(expected, run)),
+        None => Ok(measured?.judged(expected, run)),
     }
 }
 
