@@ -89,6 +89,21 @@ fn dependencies_point_one_way() {
 }
 
 #[test]
+fn who_depends_on_the_laws_compiles_no_scene() {
+    let (mut reached, mut open) = (BTreeSet::new(), vec!["laws".to_owned()]);
+    while let Some(name) = open.pop() {
+        let manifest = repository().join("crates").join(&name).join("Cargo.toml");
+        open.extend(
+            fairflight_dependencies(&manifest).into_iter().filter(|next| reached.insert(next.clone())),
+        );
+    }
+    for heavy in ["scene", "paths", "vpl", "compensation", "volumes", "catalogue"] {
+        assert!(!reached.contains(heavy), "laws reach {heavy}");
+    }
+    assert!(reached.contains("stats"), "{reached:?}");
+}
+
+#[test]
 fn crates_know_no_files_clocks_threads_or_terminals() {
     const FORBIDDEN: [&str; 9] = [
         "std::fs",

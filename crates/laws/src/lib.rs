@@ -1,4 +1,35 @@
-//! The laws of the estimators as functions.
+//! The laws of estimators and free flights as functions: what a new one of your own can be tried with.
+//!
+//! [`measure`] draws, [`judge`] compares with what should have come out: sound, unsound, or not testable at this N.
+//!
+//! ```
+//! use fairflight_laws::{Reference, judge, measure};
+//! use fairflight_media::{Extinction, PiecewiseLinear};
+//! use fairflight_sources::UniformSource;
+//!
+//! /// Ratio tracking at the rate `sigma_samp`.
+//! fn estimate(field: &impl Extinction, sigma_samp: f64, source: &mut impl UniformSource) -> f64 {
+//!     let (mut weight, mut s) = (1.0, source.next_exponential() / sigma_samp);
+//!     while s < field.length() {
+//!         weight *= 1.0 - field.sigma_t(s) / sigma_samp;
+//!         s += source.next_exponential() / sigma_samp;
+//!     }
+//!     weight
+//! }
+//!
+//! // σ_t rises to 0.8 and falls again: an optical thickness of 1.2.
+//! let field = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.0, 0.8, 0.0]).unwrap();
+//! let transmittance = Reference::exact((-1.2_f64).exp());
+//! let ours = measure(7, 1_000_000, |source| estimate(&field, 0.75, source)).unwrap();
+//! assert_eq!(judge(&ours, &transmittance, 1e-6).sound, Some(true));
+//!
+//! // The exponential of one look-up anywhere, times the length: biased by Jensen's inequality, and found out.
+//! let twin = |source: &mut _| (-3.0 * field.sigma_t(3.0 * UniformSource::next_uniform(source))).exp();
+//! let twin = measure(7, 1_000_000, twin).unwrap();
+//! assert_eq!(judge(&twin, &transmittance, 1e-6).sound, Some(false));
+//! ```
+//!
+//! An estimator that states its closed form is also judged by its variance and its look-ups:
 //!
 //! * [`transmittance::check`], [`collision::check`], [`freeflight::check`], [`phase::check`]: one law each, for any
 //!   implementer.
@@ -27,6 +58,7 @@ pub mod transmittance;
 
 pub use batch::{BATCH, NotFinite, batch_count, batch_moments, batch_size, draw_batch, measure};
 pub use dense::DenseLattice;
+pub use fairflight_stats::{Reference, Verdict, judge};
 pub use p_value::{Level, PValue};
 pub use result::CheckResult;
 pub use run::Run;

@@ -40,14 +40,19 @@ fn area(map: impl Fn(f64, f64) -> Option<DVec3>, u: f64, v: f64) -> Option<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fairflight_scene::cosine_hemisphere;
-    use std::f64::consts::FRAC_1_PI;
+    use glam::dvec3;
+    use std::f64::consts::{FRAC_1_PI, TAU};
+
+    /// A direction about z, with a density proportional to its cosine.
+    fn cosine_hemisphere(u: f64, v: f64) -> DVec3 {
+        let (sine, cosine) = ((1.0 - u).sqrt(), u.sqrt());
+        dvec3(sine * (TAU * v).cos(), sine * (TAU * v).sin(), cosine)
+    }
 
     #[test]
     fn a_cosine_is_drawn_as_it_is_told_and_a_part_of_it_is_not() {
         let told = |direction: DVec3| direction.z * FRAC_1_PI;
-        let part =
-            |u: f64, v: f64| deviation(move |x, y| Some(cosine_hemisphere(DVec3::Z, u * x, v * y)), told);
+        let part = |u: f64, v: f64| deviation(move |x, y| Some(cosine_hemisphere(u * x, v * y)), told);
         assert!(part(1.0, 1.0) < GRANTED, "{}", part(1.0, 1.0));
         for (u, v) in [(0.999, 1.0), (1.0, 0.999)] {
             assert!((part(u, v) - 0.001).abs() < 1e-5);
