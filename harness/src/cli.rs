@@ -196,8 +196,8 @@ fn positive(text: &str) -> Result<f64, String> {
 /// Arguments of `verify`.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct VerifyArguments {
-    /// Only the checks of this estimator
-    #[arg(long, value_name = "NAME")]
+    /// Only the checks that draw from this estimator, free-flight sampler or integrator
+    #[arg(long, visible_alias = "kind", value_name = "KIND")]
     pub estimator: Option<String>,
     /// Fewer samples, with less power
     #[arg(long)]

@@ -1,12 +1,16 @@
 //! `harness verify`: every law over every estimator, medium and hard case.
 
 use crate::cli::VerifyArguments;
+use crate::estimator::EstimatorSpec;
+use crate::reader::similar;
 use crate::result::{Provenance, number};
+use crate::spec::IntegratorSpec;
 use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
-use fairflight_catalogue::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, Kind, catalogue, check_level};
+use fairflight_catalogue::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, catalogue, check_level};
 use fairflight_laws::CheckResult;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::Write;
 
@@ -44,17 +48,28 @@ pub(crate) fn run(
     Ok(if results.iter().any(|result| result.holds == Some(false)) { UNSOUND } else { DONE })
 }
 
-/// The checks that draw from this kind of estimator; a kind without any is refused, as an unknown one is.
-fn select(all: Vec<Check>, estimator: Option<&str>) -> Result<Vec<Check>, Failure> {
-    let Some(name) = estimator else { return Ok(all) };
-    let is_checked = |kind: &Kind| all.iter().any(|check| check.kinds.contains(kind));
-    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(is_checked).collect();
-    let Some(kind) = kinds.iter().copied().find(|kind| kind.name() == name) else {
-        let names: Vec<&str> = kinds.into_iter().map(Kind::name).collect();
+/// The checks that draw from this kind of estimator, integrator or free-flight sampler; a kind without any is refused, as an unknown
+/// one is.
+fn select(all: Vec<Check>, kind: Option<&str>) -> Result<Vec<Check>, Failure> {
+    let Some(kind) = kind else { return Ok(all) };
+    let names = kinds(&all);
+    if !names.contains(&kind) {
+        let meant = similar::meant(kind, names.iter().copied());
         let names = names.join(", ");
-        return Err(Failure::refused(format!("--estimator: must be one of {names}, found {name}")));
-    };
+        return Err(Failure::refused(format!("--estimator: must be one of {names}, found {kind}{meant}")));
+    }
     Ok(all.into_iter().filter(|check| check.kinds.contains(&kind)).collect())
+}
+
+/// The kinds that checks draw from: those of the registries first, in their order.
+fn kinds(all: &[Check]) -> Vec<&'static str> {
+    let drawn_from: BTreeSet<&'static str> =
+        all.iter().flat_map(|check| check.kinds.iter().copied()).collect();
+    let registered = EstimatorSpec::NAMES.iter().chain(IntegratorSpec::NAMES).copied();
+    let mut names: Vec<&str> = registered.filter(|name| drawn_from.contains(name)).collect();
+    let samplers = drawn_from.into_iter().filter(|name| !names.contains(name)).collect::<Vec<_>>();
+    names.extend(samplers);
+    names
 }
 
 fn table(checks: &[Check], results: &[CheckResult], provenance: &Provenance) -> String {
@@ -120,7 +135,7 @@ struct Finding<'a> {
     id: &'a str,
     law: &'static str,
     estimator: &'a str,
-    kinds: Vec<&'static str>,
+    kinds: &'a [&'static str],
     medium: &'a str,
     /// Null: not testable.
     holds: Option<bool>,
@@ -145,7 +160,7 @@ fn json(checks: &[Check], results: &[CheckResult], provenance: &Provenance) -> R
             id: &check.id,
             law: check.law.name(),
             estimator: &check.estimator,
-            kinds: check.kinds.iter().map(|kind| kind.name()).collect(),
+            kinds: &check.kinds,
             medium: &check.medium,
             holds: result.holds,
             samples: result.samples,

@@ -1,7 +1,9 @@
 //! Every check of the catalogue, at the N of a quick run, under one family-wise false alarm.
 
-use fairflight_catalogue::{FAMILY_SIZE, Kind, Law, catalogue};
-use fairflight_tests::run_checks;
+use fairflight_catalogue::{Check, Effort, FAMILY_SIZE, Law, SAMPLERS, catalogue};
+use fairflight_tests::{repository, run_checks};
+use std::collections::BTreeSet;
+use std::fs;
 
 /// Nothing fails, and nothing is silently untested: every check of the catalogue is testable at its quick N.
 fn holds_on(medium: &str) {
@@ -72,25 +74,67 @@ media!(
 
 #[test]
 fn the_family_has_room() {
-    assert!(catalogue().len() <= FAMILY_SIZE, "{} checks", catalogue().len());
+    let draws = |check: &Check| check.samples(Effort::Quick) > 0;
+    let count = catalogue().iter().filter(|check| draws(check)).count();
+    assert!(count <= FAMILY_SIZE, "{count} checks that draw");
 }
 
 #[test]
-fn every_kind_is_drawn_from_by_checks_that_say_so() {
-    let all = catalogue();
-    for kind in Kind::ALL {
-        assert!(all.iter().any(|check| check.kinds.contains(&kind)), "{}", kind.name());
-    }
-    for check in &all {
+fn checks_say_what_they_draw_from() {
+    for check in catalogue() {
         let of = |prefix: &str| check.id.starts_with(prefix);
-        // Flights and phase functions are no estimators of transmittance, whatever they are called.
-        if ["freeflight/", "spectral/", "phase/", "vpl/"].iter().any(|prefix| of(prefix)) {
+        // Where nothing else is drawn from, it is a sampler or an integrator that a check draws from, whatever it is called.
+        if of("freeflight/") || of("spectral/") {
+            assert!(
+                check.kinds.len() == 1 && SAMPLERS.contains(&check.kinds[0]),
+                "{}: {:?}",
+                check.id,
+                check.kinds
+            );
+        }
+        if of("vpl/") {
+            assert!(check.kinds.contains(&"vpl"), "{}: {:?}", check.id, check.kinds);
+        }
+        if of("phase/") {
             assert!(check.kinds.is_empty(), "{}: {:?}", check.id, check.kinds);
         }
-        if check.kinds.contains(&Kind::Hybrid) {
-            assert!(of("hybrid/") || of("hard/14 "), "{}", check.id);
+        let once: BTreeSet<&str> = check.kinds.iter().copied().collect();
+        assert_eq!(once.len(), check.kinds.len(), "{}: {:?}", check.id, check.kinds);
+    }
+}
+
+/// The name of a type, in words.
+fn name_of(kind: &str) -> String {
+    let mut name = String::new();
+    for letter in kind.chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.extend(letter.to_lowercase());
+    }
+    name
+}
+
+#[test]
+fn every_sampler_of_free_flights_is_in_the_catalogue() {
+    let mut found = BTreeSet::new();
+    for (folder, of_lines) in [("crates/freeflight/src", true), ("crates/freeflight/src/spectral", false)] {
+        for entry in fs::read_dir(repository().join(folder)).unwrap().flatten() {
+            let code = fs::read_to_string(entry.path()).unwrap_or_default();
+            for line in code.lines().filter(|line| line.starts_with("impl<") && line.contains("FreeFlight<"))
+            {
+                let kind = line.split(" for ").last().unwrap().split(['<', ' ']).next().unwrap();
+                if kind.starts_with('&') {
+                    continue;
+                }
+                let name = name_of(kind);
+                let is_flight = of_lines && !name.ends_with("_flight");
+                found.insert(if is_flight { format!("{name}_flight") } else { name });
+            }
         }
     }
+    let known: BTreeSet<String> = SAMPLERS.iter().map(|name| (*name).to_owned()).collect();
+    assert_eq!(found, known);
 }
 
 #[test]
@@ -106,7 +150,7 @@ fn names_are_unique() {
 fn a_check_depends_on_its_seed_and_on_nothing_else() {
     let all = catalogue();
     let check = all.iter().find(|check| check.id == "constant/ratio_tracking").unwrap();
-    let run = |seed| check.run(fairflight_catalogue::Effort::Quick, seed, 1e-8);
+    let run = |seed| check.run(Effort::Quick, seed, 1e-8);
     assert_eq!(run(3), run(3));
     assert_ne!(run(3).mean_z, run(4).mean_z);
 }

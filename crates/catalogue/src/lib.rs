@@ -11,13 +11,11 @@
 
 mod checks;
 mod hard_cases;
-mod kind;
 mod twins;
 
 pub mod paths;
 pub mod vpl;
 
 pub use checks::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, Law, catalogue, check_level};
-pub use hard_cases::{HardCase, Outcome, hard_cases};
-pub use kind::Kind;
+pub use hard_cases::{HardCase, Outcome, ROWS, SAMPLERS, hard_cases, spared};
 pub use twins::{Evident, Rejection, Twin, twins};

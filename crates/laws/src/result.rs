@@ -83,10 +83,11 @@ impl CheckResult {
     /// The outcome of several verdicts that share one check: it holds if all do. Its numbers are those of the largest |z|, its
     /// power that of the weakest.
     #[must_use]
-    pub fn of_all(parts: impl IntoIterator<Item = (&'static str, Self)>) -> Self {
+    pub fn of_all<N: AsRef<str>>(parts: impl IntoIterator<Item = (N, Self)>) -> Self {
         let mut whole = Self::exact(true, "");
         let mut weakest = Some(0.0_f64);
         for (name, part) in parts {
+            let name = name.as_ref();
             whole.holds = match (whole.holds, part.holds) {
                 (Some(false), _) | (_, Some(false)) => Some(false),
                 (Some(true), Some(true)) => Some(true),

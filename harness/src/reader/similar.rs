@@ -19,7 +19,7 @@ const KNOWN_ELSEWHERE: [(&str, &str); 14] = [
 ];
 
 /// " (did you mean …?)" where one of `names` is as good as the word, or another name of it is known; else nothing.
-pub(super) fn meant<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn meant<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> String {
     /// Of one slip of the keyboard in a short word, two in a long one.
     const ALIKE: f64 = 0.75;
     let names: Vec<&str> = names.collect();

@@ -143,6 +143,25 @@ fn verify_of_one_estimator_holds_and_prints_its_power() {
 }
 
 #[test]
+fn verify_takes_integrators_and_samplers_and_says_what_was_meant() {
+    for (kind, other) in [("jittered_flight", "regular_flight"), ("transmittance", "vpl")] {
+        let outcome = harness(&["verify", "--quick", "--json", "--kind", kind], "");
+        assert_eq!(outcome.code, 0, "{}{}", outcome.stdout, outcome.stderr);
+        let json: Value = serde_json::from_str(&outcome.stdout).unwrap();
+        let checks = json["checks"].as_array().unwrap();
+        assert!(checks.iter().all(|check| check["kinds"].as_array().unwrap().contains(&kind.into())));
+        let hard = checks.iter().filter(|check| check["law"] == "hard_case").count();
+        assert!(hard > 3 && checks.len() > hard, "{kind}: {hard} of {}", checks.len());
+        assert!(!checks.iter().any(|check| check["kinds"] == serde_json::json!([other])));
+    }
+    let outcome = harness(&["verify", "--estimator", "path_trace"], "");
+    assert_eq!(outcome.code, 2);
+    for word in ["woodcock, ", "vpl, ", "shared_distance", "(did you mean path_tracer?)"] {
+        assert!(outcome.stderr.contains(word), "{word}: {}", outcome.stderr);
+    }
+}
+
+#[test]
 fn verify_as_json_tells_each_check_with_its_p_values() {
     let outcome = harness(&["verify", "--quick", "--json", "--estimator", "adaptive_ratio"], "");
     assert_eq!(outcome.code, 0, "{}{}", outcome.stdout, outcome.stderr);

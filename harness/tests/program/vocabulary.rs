@@ -2,8 +2,9 @@
 
 use crate::common::harness;
 use boon::{Compiler, Schemas};
-use fairflight_catalogue::catalogue;
+use fairflight_catalogue::{Law, ROWS, SAMPLERS, catalogue, hard_cases, spared};
 use fairflight_harness::estimator::EstimatorSpec;
+use fairflight_harness::spec::IntegratorSpec;
 use fairflight_harness::vocabulary::{schema, tables, things};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -158,10 +159,39 @@ fn the_tables_of_the_documentation_are_those_of_the_program() {
     assert!(found == tables(), "`harness schema --tables` prints other tables: put them between the marks");
 }
 
+/// What scenes and experiments know, and what draws distances.
+fn registered() -> BTreeSet<&'static str> {
+    EstimatorSpec::NAMES.iter().chain(IntegratorSpec::NAMES).copied().collect()
+}
+
+/// Samplers of free flights are no kind of a scene: they are those that the catalogue knows beside the registries, and a test over
+/// their sources holds them to that.
+fn checked() -> BTreeSet<&'static str> {
+    catalogue().iter().flat_map(|check| check.kinds.iter().copied()).collect()
+}
+
 #[test]
-fn every_kind_of_estimator_has_a_law_in_the_catalogue() {
-    let checked: BTreeSet<&str> =
-        catalogue().iter().flat_map(|check| check.kinds.iter().map(|kind| kind.name())).collect();
-    let registered: BTreeSet<&str> = EstimatorSpec::NAMES.iter().copied().collect();
-    assert_eq!(checked, registered);
+fn every_kind_has_a_law_in_the_catalogue_and_every_name_there_is_a_kind() {
+    let laws: BTreeSet<&str> = catalogue()
+        .iter()
+        .filter(|check| !matches!(check.law, Law::WrongTwin | Law::HardCase))
+        .flat_map(|check| check.kinds.iter().copied())
+        .collect();
+    let without: Vec<&str> = registered().difference(&laws).copied().collect();
+    assert!(without.is_empty(), "no law of {without:?}");
+    let others: BTreeSet<&str> = checked().difference(&registered()).copied().collect();
+    let samplers: BTreeSet<&str> = SAMPLERS.iter().copied().collect();
+    assert_eq!(others, samplers, "names that are no kind, or samplers without a check");
+}
+
+#[test]
+fn every_kind_is_put_through_every_hard_case_or_says_why_not() {
+    let cases = hard_cases();
+    for kind in registered().into_iter().chain(SAMPLERS.iter().copied()) {
+        for (row, what) in ROWS {
+            let is_run = cases.iter().any(|case| case.number == row && case.kinds.contains(&kind));
+            let reason = spared(kind, row);
+            assert!(is_run != reason.is_some(), "{kind}, row {row} ({what}): {is_run}, {reason:?}");
+        }
+    }
 }

@@ -3,7 +3,6 @@
 use super::media::{LAWFUL, analytic_cosine, voxels};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_freeflight::HIGHEST_MOMENT;
 use fairflight_laws::lookups::{self, LookupLaw};
 use fairflight_laws::{Run, scores};
@@ -137,7 +136,7 @@ fn add<F: SpecimenField>(
 ) -> Check {
     let (id, medium) = (format!("cells/{}/{name}", specimen.name), specimen.name);
     let specimen = Arc::clone(specimen);
-    let kind = if name.starts_with("residual") { Kind::ResidualCells } else { Kind::JitteredRatio };
+    let kind = if name.starts_with("residual") { "residual_cells" } else { "jittered_ratio" };
     let (words, medium) = (name.replace('_', " "), medium.replace('_', " "));
     Check::new(id, Law::Transmittance, words, medium, SAMPLES, move |arguments| run(&specimen, arguments))
         .about([kind])

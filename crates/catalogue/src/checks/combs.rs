@@ -4,7 +4,6 @@ use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_freeflight::HIGHEST_MOMENT;
 use fairflight_laws::CheckResult;
 use fairflight_laws::lookups::{self, LookupLaw};
@@ -117,7 +116,7 @@ fn marching<F: SpecimenField>(
     add(specimen, name, Law::Transmittance, samples, move |specimen, run| {
         specimen.examine(&estimator, &[], |_| Scores::Unbounded, lookups_of(&estimator), run)
     })
-    .about([Kind::UnbiasedRayMarching])
+    .about(["unbiased_ray_marching"])
 }
 
 /// The look-ups of an estimate: those that combs share, and the teeth of 1 + N combs in each segment, N the order of its roulette.
@@ -155,7 +154,7 @@ fn tuned<F: SpecimenField>(
         let estimator = estimator.with_roulette(Roulette::tuned(k2));
         specimen.examine(&estimator, &[], |_| Scores::Unbounded, lookups_of(&estimator), run)
     })
-    .about([Kind::UnbiasedRayMarching])
+    .about(["unbiased_ray_marching"])
 }
 
 /// Without and with endpoint matching.
@@ -171,7 +170,7 @@ fn telescoping<F: SpecimenField>(
             add(specimen, name, Law::Transmittance, samples, move |specimen, run| {
                 specimen.examine(&estimator, &[], |_| Scores::Unbounded, LookupLaw::Unknown, run)
             })
-            .about([Kind::Telescoping])
+            .about(["telescoping"])
         },
     )
 }
@@ -182,7 +181,7 @@ fn jackknife<F: SpecimenField>(specimen: &Arc<Specimen<F>>, teeth: u32) -> Check
     add(specimen, "jackknife", Law::OwnExpectation, LEVELS, move |specimen, run| {
         specimen.baseline(&Jackknife::new(comb), |_| Scores::Unbounded, LookupLaw::Fixed, run)
     })
-    .about([Kind::Jackknife])
+    .about(["jackknife"])
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, FieldError, PiecewiseConstant, PiecewiseLinear, Vacuum};
 use fairflight_transmittance::{Explorers, Offset, RayMarching, Tracking};
@@ -76,9 +75,8 @@ pub(super) fn jittered<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
 
 /// The estimators that need 0 ≤ σ_t ≤ the field's own majorant, the line integral with each of `splits`.
 pub(super) fn of_positive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, splits: &[u32]) -> Vec<Check> {
-    let mut checks = vec![
-        add(specimen, "woodcock", Law::Transmittance, ENDING, Specimen::woodcock).about([Kind::Woodcock]),
-    ];
+    let mut checks =
+        vec![add(specimen, "woodcock", Law::Transmittance, ENDING, Specimen::woodcock).about(["woodcock"])];
     for &splits in splits {
         let name = format!("line_integral_{splits}");
         // The look-ups of n flights are less skewed than those of one.
@@ -86,7 +84,7 @@ pub(super) fn of_positive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, splits:
         let check = add(specimen, &name, Law::Transmittance, samples, move |specimen, run| {
             specimen.line_integral(splits, run)
         });
-        checks.push(check.about([Kind::LineIntegral]));
+        checks.push(check.about(["line_integral"]));
     }
     checks
 }
@@ -108,7 +106,7 @@ where
         Ok(tracking) => specimen.tracking(&tracking, run),
         Err(error) => fairflight_laws::CheckResult::exact(false, format!("refused: {error}")),
     })
-    .about([Kind::DoubleParticle])
+    .about(["double_particle"])
 }
 
 fn marching<F: SpecimenField>(specimen: &Arc<Specimen<F>>, name: &str, offset: Offset) -> Check {
@@ -120,9 +118,9 @@ fn marching<F: SpecimenField>(specimen: &Arc<Specimen<F>>, name: &str, offset: O
         }
     })
     .about(match offset {
-        Offset::Fixed => vec![Kind::RayMarching],
+        Offset::Fixed => vec!["ray_marching"],
         // One comb with a random shift, by its other name.
-        Offset::Jittered => vec![Kind::RayMarching, Kind::Naive],
+        Offset::Jittered => vec!["ray_marching", "naive"],
     })
 }
 

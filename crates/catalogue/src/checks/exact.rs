@@ -3,7 +3,6 @@
 use super::estimators::add;
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version, Woodcock};
 use fairflight_laws::{CheckResult, collision};
 use fairflight_media::{Constant, Vacuum};
@@ -17,10 +16,10 @@ pub(super) fn collision_models() -> Vec<Check> {
     let single = |version| move |albedo| SingleParticle { version, albedo };
     vec![
         model("woodcock", |albedo| Woodcock { albedo }),
-        model("double particle", |albedo| DoubleParticle { albedo }).about([Kind::DoubleParticle]),
-        model("terminating", single(Version::Terminating)).about([Kind::SingleParticle]),
-        model("non-terminating", single(Version::NonTerminating)).about([Kind::SingleParticle]),
-        model("adaptive", single(Version::Adaptive)).about([Kind::SingleParticle]),
+        model("double particle", |albedo| DoubleParticle { albedo }).about(["double_particle"]),
+        model("terminating", single(Version::Terminating)).about(["single_particle"]),
+        model("non-terminating", single(Version::NonTerminating)).about(["single_particle"]),
+        model("adaptive", single(Version::Adaptive)).about(["single_particle"]),
     ]
 }
 
@@ -62,19 +61,19 @@ pub(super) fn variance_checks<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> 
         add(specimen, "variance_positive_difference", Law::Variance, SAMPLES, move |s, run| {
             mild(0.5, 8.0, run, s)
         })
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         add(specimen, "variance_negative_difference", Law::Variance, SAMPLES, move |s, run| {
             mild(0.9, 8.0, run, s)
         })
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         add(specimen, "variance_without_control", Law::Variance, 3 * SAMPLES, move |s, run| {
             mild(0.0, 8.0, run, s)
         })
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         add(specimen, "variance_non_terminating", Law::Variance, 2 * SAMPLES, move |s, run| {
             single(Version::NonTerminating, run, s)
         })
-        .about([Kind::SingleParticle]),
+        .about(["single_particle"]),
     ]
 }
 

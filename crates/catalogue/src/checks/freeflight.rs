@@ -72,15 +72,15 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
         let (majorant, length) = (self.majorant, self.specimen.field.length());
         let (border, values) = self.cells;
         vec![
-            self.check("woodcock", WITH_LOOKUPS, Weights::One, move || {
+            self.check("woodcock_flight", "woodcock", WITH_LOOKUPS, Weights::One, move || {
                 Ok((Woodcock::new(Constant::new(majorant, length)?), Vec::new()))
             }),
-            self.check("woodcock_in_cells", WITH_LOOKUPS, Weights::One, move || {
+            self.check("woodcock_flight", "woodcock_in_cells", WITH_LOOKUPS, Weights::One, move || {
                 let cells = PiecewiseConstant::new(vec![0.0, border, length], values.to_vec())?;
                 let borders = cells.breakpoints();
                 Ok((Woodcock::new(cells), borders))
             }),
-            self.check("jittered", WITHOUT_LOOKUPS, Weights::One, || {
+            self.check("jittered_flight", "jittered", WITHOUT_LOOKUPS, Weights::One, || {
                 Ok((JitteredFlight::new(0.5).expect(LAWFUL), Vec::new()))
             }),
             self.tracking("tracking_terminating_above", Version::Terminating, 1.25),
@@ -96,7 +96,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     /// Tracking with `share` of the majorant as sampling extinction.
     fn tracking(&self, name: &str, version: Version, share: f64) -> Check {
         let (sampling, length) = (share * self.majorant, self.specimen.field.length());
-        self.check(name, WITH_LOOKUPS, Weights::Any, move || {
+        self.check("tracking_flight", name, WITH_LOOKUPS, Weights::Any, move || {
             Ok((Tracking::new(version, Constant::new(sampling, length)?), Vec::new()))
         })
     }
@@ -104,7 +104,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     /// A majorant that is linear in pieces, and far above the field in places.
     fn steep_majorant(&self) -> Check {
         let (majorant, length) = (self.majorant, self.specimen.field.length());
-        self.check("woodcock_in_linear_pieces", WITH_LOOKUPS, Weights::One, move || {
+        self.check("woodcock_flight", "woodcock_in_linear_pieces", WITH_LOOKUPS, Weights::One, move || {
             let nodes = vec![0.0, 0.5 * length, length];
             let pieces = PiecewiseLinear::new(nodes, vec![majorant, 1.2 * majorant, 0.5 * majorant])?;
             let borders = pieces.breakpoints();
@@ -113,26 +113,29 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
     }
 
     fn newton(&self) -> Check {
-        self.check("newton", WITHOUT_LOOKUPS, Weights::One, || Ok((Newton, Vec::new())))
+        self.check("newton_flight", "newton", WITHOUT_LOOKUPS, Weights::One, || Ok((Newton, Vec::new())))
     }
 
     fn inversion(&self) -> Check
     where
         F: InvertOpticalThickness,
     {
-        self.check("inversion", WITHOUT_LOOKUPS, Weights::One, || Ok((Inversion, Vec::new())))
+        self.check("inversion_flight", "inversion", WITHOUT_LOOKUPS, Weights::One, || {
+            Ok((Inversion, Vec::new()))
+        })
     }
 
     fn regular(&self) -> Check
     where
         F: Cells,
     {
-        self.check("regular", WITH_LOOKUPS, Weights::One, || Ok((Regular, Vec::new())))
+        self.check("regular_flight", "regular", WITH_LOOKUPS, Weights::One, || Ok((Regular, Vec::new())))
     }
 
-    /// A check of the sampler that `build` makes together with the borders of what it knows.
+    /// A check of the sampler of this kind that `build` makes together with the borders of what it knows.
     fn check<E: ClosedForm<F>>(
         &self,
+        kind: &'static str,
         name: &str,
         samples: u64,
         weights: Weights,
@@ -150,6 +153,7 @@ impl<F: SpecimenField + OpticalThickness> Medium<F> {
                 Err(error) => CheckResult::exact(false, format!("refused: {error}")),
             }
         })
+        .about([kind])
     }
 }
 

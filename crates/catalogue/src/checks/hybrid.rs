@@ -4,7 +4,6 @@ use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_media::PiecewiseConstant;
 use fairflight_media::PiecewiseLinear;
@@ -41,7 +40,7 @@ fn taught<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
         }
         check(specimen, &experience, run)
     })
-    .about([Kind::Hybrid])
+    .about(["hybrid"])
 }
 
 /// Knowing nothing.
@@ -49,7 +48,7 @@ fn untaught<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
     add(specimen, "hybrid_without_experience", Law::Transmittance, SAMPLES, |specimen, run| {
         check(specimen, &Experience::default(), run)
     })
-    .about([Kind::Hybrid])
+    .about(["hybrid"])
 }
 
 fn check<F: SpecimenField>(

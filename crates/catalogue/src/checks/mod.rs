@@ -18,7 +18,9 @@ mod specimen;
 mod spectral;
 mod vpl;
 
-use crate::{Kind, hard_cases, twins};
+pub(crate) use regular::FirstEstimate;
+
+use crate::{hard_cases, twins};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_sources::derive_seed;
 use fairflight_stats::sidak_level;
@@ -26,8 +28,8 @@ use fairflight_stats::sidak_level;
 /// False alarm of all checks together: one in a million.
 pub const FAMILY_LEVEL: f64 = 1e-6;
 
-/// The number of checks that share it. More than there are: the catalogue can grow, and no check changes its level, its N or its
-/// verdict by that.
+/// The number of checks that share it: of those that draw. More than there are: the catalogue can grow, and no check changes its level,
+/// its N or its verdict by that.
 pub const FAMILY_SIZE: usize = 1000;
 
 /// The false alarm of one check ([`sidak_level`]), whichever part of the catalogue is run.
@@ -117,9 +119,9 @@ pub struct Check {
     pub law: Law,
     /// The estimator or model, in words.
     pub estimator: String,
-    /// The kinds of estimator that it draws from, and of a wrong twin the kind whose law rejects it; none for a check of flights, walks
-    /// among surfaces, phase functions or rays alone.
-    pub kinds: Vec<Kind>,
+    /// The kinds of estimator, free-flight sampler and integrator that it draws from, by their names; of a wrong twin those
+    /// whose law rejects it. None for a check of phase functions, point sets or rays alone.
+    pub kinds: Vec<&'static str>,
     /// The medium, in words.
     pub medium: String,
     quick_samples: u64,
@@ -146,9 +148,10 @@ impl Check {
         }
     }
 
-    /// The same, about these kinds of estimator: those that it draws from.
-    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
-        Self { kinds: kinds.into(), ..self }
+    /// The same, which also draws from these kinds.
+    fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
+        self.kinds.extend(kinds);
+        self
     }
 
     /// The N of this check. A twin is rejected, and a hard case decided, at the N that it states itself.

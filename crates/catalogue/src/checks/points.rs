@@ -2,7 +2,6 @@
 
 use super::media::LAWFUL;
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::{CheckResult, Run, measure};
 use fairflight_media::{Constant, OpticalThickness, PiecewiseLinear, Vacuum};
@@ -61,7 +60,7 @@ fn check<P: PointSet>(
             }
         },
     )
-    .about([Kind::DoubleParticle])
+    .about(["double_particle"])
 }
 
 /// A seed for the next replica of a run.

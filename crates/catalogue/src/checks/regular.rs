@@ -5,7 +5,6 @@ use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine, voxels};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_freeflight::lookups_of_a_walk;
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::Observed;
@@ -52,14 +51,14 @@ where
     add(&specimen, "regular", Law::Transmittance, 1, |specimen, run| {
         specimen.examine(&Regular, &[], |_| Scores::Unbounded, LookupLaw::Fixed, run)
     })
-    .about([Kind::Regular])
+    .about(["regular"])
 }
 
 /// The first estimate of a run: with the guess μ of its start, whatever is learnt on the way.
 #[derive(Clone, Copy)]
-struct FirstEstimate {
-    guess: f64,
-    start: ProgressiveMajorant,
+pub(crate) struct FirstEstimate {
+    pub(crate) guess: f64,
+    pub(crate) start: ProgressiveMajorant,
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for FirstEstimate {
@@ -115,5 +114,5 @@ fn progressive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, guess: f64) -> Che
         };
         specimen.examine_with_lookups(&estimator, &[], |_| Scores::Unbounded, lookups, run)
     })
-    .about([Kind::ProgressiveMajorant])
+    .about(["progressive_majorant"])
 }

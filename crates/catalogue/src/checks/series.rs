@@ -5,7 +5,6 @@ use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_laws::CheckResult;
 use fairflight_laws::lookups::LookupLaw::{MeanOnly, Poisson, Unknown};
 use fairflight_media::{PiecewiseConstant, PiecewiseLinear};
@@ -47,14 +46,14 @@ const SKEWED: u64 = 900_000;
 /// A check of `estimator`, a function of the field that gives a result. A macro, because no bound says of a type that it is an
 /// estimator for every lifetime of an observed field.
 macro_rules! law {
-    ($kind:ident, $specimen:expr, $name:expr, $samples:expr, $lookups:expr, $estimator:expr) => {
+    ($kind:literal, $specimen:expr, $name:expr, $samples:expr, $lookups:expr, $estimator:expr) => {
         add($specimen, $name, Law::Transmittance, $samples, move |specimen, run| {
             match $estimator(&specimen.field) {
                 Ok(estimator) => specimen.examine(&estimator, &[], |_| Scores::Unbounded, $lookups, run),
                 Err(error) => CheckResult::exact(false, format!("refused: {error}")),
             }
         })
-        .about([Kind::$kind])
+        .about([$kind])
     };
 }
 
@@ -62,27 +61,29 @@ fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Vec<Check> {
     type Never = std::convert::Infallible;
     let positive = specimen.field.minorant() >= 0.0;
     let mut checks = vec![
-        law!(NextFlight, specimen, "next_flight_ratio", SKEWED, Poisson, |_: &F| Ok::<_, Never>(
+        law!("next_flight", specimen, "next_flight_ratio", SKEWED, Poisson, |_: &F| Ok::<_, Never>(
             NextFlight::new(NextFlightVersion::Ratio)
         )),
-        law!(NextFlight, specimen, "unidirectional", SKEWED, Poisson, |_: &F| Ok::<_, Never>(Unidirectional)),
-        law!(NextFlight, specimen, "bidirectional", SAMPLED, Poisson, |_: &F| Ok::<_, Never>(Bidirectional)),
-        law!(AdaptiveRatio, specimen, "adaptive_ratio", SAMPLED, Unknown, |_: &F| AdaptiveRatio::new(0.1)),
-        law!(GeneralisedPoisson, specimen, "generalised_poisson", KNOWN, Poisson, |field: &F| {
+        law!("next_flight", specimen, "unidirectional", SKEWED, Poisson, |_: &F| Ok::<_, Never>(
+            Unidirectional
+        )),
+        law!("next_flight", specimen, "bidirectional", SAMPLED, Poisson, |_: &F| Ok::<_, Never>(
+            Bidirectional
+        )),
+        law!("adaptive_ratio", specimen, "adaptive_ratio", SAMPLED, Unknown, |_: &F| AdaptiveRatio::new(0.1)),
+        law!("generalised_poisson", specimen, "generalised_poisson", KNOWN, Poisson, |field: &F| {
             let thickness = field.majorant() * field.length();
             // The residual of a control of a fifth of the majorant.
             GeneralisedPoisson::new(1.2 * thickness, thickness)
         }),
     ];
     if positive {
-        checks.push(law!(
-            NextFlight,
-            specimen,
-            "next_flight_delta",
-            SKEWED,
-            MeanOnly,
-            |_: &F| Ok::<_, Never>(NextFlight::new(NextFlightVersion::Delta))
-        ));
+        checks.push(law!("next_flight", specimen, "next_flight_delta", SKEWED, MeanOnly, |_: &F| Ok::<
+            _,
+            Never,
+        >(
+            NextFlight::new(NextFlightVersion::Delta)
+        )));
     }
     for (name, version, samples, lookups) in [
         ("p_series_cmf", PSeriesVersion::Cmf, SKEWED, MeanOnly),
@@ -90,7 +91,7 @@ fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Vec<Check> {
         ("p_series_ratio", PSeriesVersion::Ratio, KNOWN, Poisson),
         ("p_series_next_flight", PSeriesVersion::NextFlight, SKEWED, Poisson),
     ] {
-        checks.push(law!(PSeries, specimen, name, samples, lookups, |field: &F| PSeries::with_majorant(
+        checks.push(law!("p_series", specimen, name, samples, lookups, |field: &F| PSeries::with_majorant(
             version, field
         )));
     }

@@ -3,7 +3,6 @@
 use super::estimators::{ENDING, add};
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
-use crate::Kind;
 use fairflight_collision::{Albedo, SingleParticle, Version};
 use fairflight_laws::CheckResult;
 use fairflight_media::{Constant, Vacuum};
@@ -59,5 +58,5 @@ fn one<F: SpecimenField>(
         let model = SingleParticle { version, albedo };
         specimen.tracking(&Tracking::new(model, Vacuum::new(length), sampling), run)
     })
-    .about([Kind::SingleParticle])
+    .about(["single_particle"])
 }

@@ -90,8 +90,9 @@ where
         let (control, rest) = (self.constant(0.1 * majorant), self.constant(0.9 * majorant));
         let tracking = SpectralTracking::new(MaxScheme, self.constant(majorant));
         [
-            self.check("max_scheme", Weights::Any, tracking),
+            self.check("spectral_tracking", "max_scheme", Weights::Any, tracking),
             self.check(
+                "spectral_tracking",
                 "max_scheme_with_a_shared_part",
                 Weights::Any,
                 SpectralTracking::with_control(MaxScheme, control, rest),
@@ -105,17 +106,27 @@ where
         let majorants = self.majorants.map(|majorant| self.constant(majorant));
         let average = SpectralTracking::new(AverageScheme, self.constant(loose * self.majorant()));
         [
-            self.check("average_scheme", bound, average),
-            self.check("hero_wavelength", bound, HeroWavelength::new(self.constant(self.majorant()))),
-            self.check("separate_solve", bound, SeparateSolve::new(majorants)),
+            self.check("spectral_tracking", "average_scheme", bound, average),
+            self.check(
+                "hero_wavelength",
+                "hero_wavelength",
+                bound,
+                HeroWavelength::new(self.constant(self.majorant())),
+            ),
+            self.check("separate_solve", "separate_solve", bound, SeparateSolve::new(majorants)),
         ]
     }
 
     fn shared(&self, sampling: f64) -> Check {
-        self.check("shared_distance", Weights::Any, SharedDistance::new(self.constant(sampling)))
+        self.check(
+            "shared_distance",
+            "shared_distance",
+            Weights::Any,
+            SharedDistance::new(self.constant(sampling)),
+        )
     }
 
-    fn check<E>(&self, name: &str, weights: Weights, sampler: E) -> Check
+    fn check<E>(&self, kind: &'static str, name: &str, weights: Weights, sampler: E) -> Check
     where
         E: Send + Sync + 'static,
         for<'f> E: ClosedForm<Wavelength<&'f F, N>> + SpectralFreeFlight<F, N>,
@@ -130,6 +141,7 @@ where
                 (name, one_wavelength(&*field, &sampler, wavelength, weights, run))
             }))
         })
+        .about([kind])
     }
 }
 
@@ -170,6 +182,7 @@ fn decomposition() -> Vec<Check> {
             let borders = [(control - 0.1) / 1.4, 1.0 + (1.5 - control) / 0.65];
             examine(&specimen, &sampler, &borders, weights, run)
         })
+        .about(["decomposition_tracking"])
     };
     let exact_control = {
         let specimen = Arc::clone(&steps);
@@ -183,6 +196,7 @@ fn decomposition() -> Vec<Check> {
                 DecompositionTracking::new(Version::Terminating, pieces([0.1, 0.1]), pieces([1.1, 0.5]));
             examine(&specimen, &sampler, &[2.0], Weights::One, run)
         })
+        .about(["decomposition_tracking"])
     };
     vec![
         of_tent("decomposition_tracking", Weights::One, Version::Terminating, 0.1, 1.4),

@@ -2,7 +2,6 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_laws::collision;
 use fairflight_media::{Constant, Counted, RayQuadrature, Tolerance, Vacuum};
@@ -116,7 +115,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "one rounding",
                 move || rounded_null(delta),
             )
-            .about([Kind::SingleParticle]),
+            .about(["single_particle"]),
         );
     }
     for a in [0.0, 0.5, 1.0] {
@@ -130,7 +129,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                     "1e-11 relative",
                     move || variance_at(r, a),
                 )
-                .about([Kind::SingleParticle]),
+                .about(["single_particle"]),
             );
         }
     }
@@ -150,7 +149,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                     judge_walk(&Constant::new(tau, 1.0).expect(LAWFUL), &estimator, run)
                 },
             )
-            .about([Kind::SingleParticle]),
+            .about(["single_particle"]),
         );
     }
     cases.push(
@@ -166,7 +165,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 Outcome::value((1e-3 * (branch.moment(1) - 1.0)).exp(), (-1.0_f64).exp(), 1e-12)
             },
         )
-        .about([Kind::SingleParticle]),
+        .about(["single_particle"]),
     );
     for weight in [1.0 - 1e-3, 1.0 + 1e-3] {
         cases.push(
@@ -178,7 +177,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "1e-8 relative: 1e6 roundings",
                 move || a_million_collisions(weight),
             )
-            .about([Kind::DoubleParticle]),
+            .about(["double_particle"]),
         );
     }
     cases

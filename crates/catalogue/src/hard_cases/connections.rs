@@ -127,5 +127,5 @@ pub(super) fn cases() -> Vec<HardCase> {
             move |run| compensated(&next_to(tiny::isotropic(1), distance), placement, run),
         ));
     }
-    cases
+    cases.into_iter().map(|case| case.about(["vpl"])).collect()
 }

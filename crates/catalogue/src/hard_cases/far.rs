@@ -2,7 +2,6 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Bounds, Constant, Homogeneous, OpticalThickness, PiecewiseConstant, Ray, Vacuum};
 use fairflight_sources::Seeded;
@@ -47,7 +46,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "1e-12: the input is exact",
             move || in_space(cube(), DVec3::X, 1e-12),
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         HardCase::deterministic(
             11,
             "a ball of 1e-3 seen from 1e6, obliquely",
@@ -56,7 +55,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "1e-7: the conditioning of the input",
             move || in_space(ball(), dvec3(0.3, -0.7, 0.64), 1e-7),
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         HardCase::deterministic(
             11,
             "a profile with a feature of 1e-3 at 1e6",
@@ -72,7 +71,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 Outcome::value(walk.estimate(&field, &mut Seeded::new(11)), (-width / SIZE).exp(), 1e-12)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         HardCase::statistical(
             11,
             "a profile with a feature of 1e-3 at 1e6, no control",
@@ -86,6 +85,6 @@ pub(super) fn cases() -> Vec<HardCase> {
                 judge_walk(&profile(), &Tracking::new(model, Vacuum::new(FAR + 1.0), rate), run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     ]
 }

@@ -1,7 +1,6 @@
 //! Row 21: variances that no sample shows.
 
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::check;
@@ -52,7 +51,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 10_000,
                 move |run| tail(j, run),
             )
-            .about([Kind::DoubleParticle])
+            .about(["double_particle"])
         })
         .collect()
 }

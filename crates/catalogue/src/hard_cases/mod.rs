@@ -5,6 +5,7 @@
 //! judges.
 
 mod anisotropy;
+mod by_kind;
 mod collisions;
 mod connections;
 mod far;
@@ -18,7 +19,8 @@ mod vacuum;
 mod variates;
 mod voxel_faces;
 
-use crate::Kind;
+pub use by_kind::{ROWS, SAMPLERS, spared};
+
 use fairflight_laws::{CheckResult, Run};
 
 /// What came of a case.
@@ -79,12 +81,14 @@ pub struct HardCase {
     pub title: String,
     /// Which of ours is tried.
     pub estimator: &'static str,
-    /// The kinds of estimator that it draws from.
-    pub kinds: Vec<Kind>,
+    /// The kinds of estimator, free-flight sampler and integrator that it draws from, by their names.
+    pub kinds: Vec<&'static str>,
     /// The exact answer and how it is known.
     pub exact: String,
     /// How near is right.
     pub tolerance: &'static str,
+    /// Whether a refusal is the right answer, in part at least.
+    pub refusal: bool,
     /// N of a judged run; 0 for a deterministic evaluation.
     pub samples: u64,
     function: Box<dyn Fn(Run) -> Outcome + Send + Sync>,
@@ -107,6 +111,7 @@ impl HardCase {
             kinds: Vec::new(),
             exact: exact.into(),
             tolerance,
+            refusal: false,
             samples: 0,
             function: Box::new(move |_| function()),
         }
@@ -128,14 +133,16 @@ impl HardCase {
             kinds: Vec::new(),
             exact: exact.into(),
             tolerance: "the law, at its share of the false alarm",
+            refusal: false,
             samples,
             function: Box::new(function),
         }
     }
 
-    /// The same, about these kinds of estimator.
-    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
-        Self { kinds: kinds.into(), ..self }
+    /// The same, which draws from these kinds.
+    fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
+        self.kinds.extend(kinds);
+        self
     }
 
     /// Evaluates the case.
@@ -154,7 +161,7 @@ impl std::fmt::Debug for HardCase {
     }
 }
 
-/// All hard cases of transmittance, of phase functions and of virtual point lights, by number.
+/// All hard cases, by number.
 #[must_use]
 pub fn hard_cases() -> Vec<HardCase> {
     let mut cases = vacuum::cases();
@@ -169,6 +176,7 @@ pub fn hard_cases() -> Vec<HardCase> {
     cases.extend(spectral::cases());
     cases.extend(anisotropy::cases());
     cases.extend(connections::cases());
+    cases.extend(by_kind::cases(&cases));
     cases.sort_by_key(|case| case.number);
     cases
 }

@@ -2,7 +2,6 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_media::{Constant, PiecewiseConstant, Vacuum};
 use fairflight_sources::Seeded;
@@ -29,7 +28,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 judge_walk(&constant(1.0, 2.0), &estimator, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         HardCase::statistical(
             3,
             "sigma_samp 0.5 below sigma_t 1, length 2, albedo 0",
@@ -42,7 +41,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 judge_walk(&constant(1.0, 2.0), &estimator, run)
             },
         )
-        .about([Kind::SingleParticle]),
+        .about(["single_particle"]),
         HardCase::statistical(
             4,
             "extinction 1 then -0.5, length 1 each",
@@ -55,7 +54,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 judge_walk(&field, &estimator, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         HardCase::statistical(
             5,
             "extinction -0.5, length 2",
@@ -67,7 +66,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 judge_walk(&constant(-0.5, 2.0), &estimator, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         HardCase::deterministic(
             5,
             "extinction -0.5, length 2, as its own control",
@@ -80,6 +79,6 @@ pub(super) fn cases() -> Vec<HardCase> {
                 Outcome::value(estimator.estimate(&field, &mut Seeded::new(5)), 1.0_f64.exp(), 0.0)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     ]
 }

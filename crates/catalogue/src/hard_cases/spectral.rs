@@ -152,7 +152,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             "1 for each channel (collided and escaped)",
             "1e-13",
             exact_furnace,
-        ),
+        )
+        .about(["spectral_tracking"]),
         HardCase::statistical(
             6,
             "sigma_t = 0 in one channel, 1 in the others, a furnace, average scheme",
@@ -160,7 +161,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             EXACT,
             SAMPLES,
             move |run| judged_furnace(run, Some(3.0), true, |source| furnace(average, source)),
-        ),
+        )
+        .about(["spectral_tracking"]),
         HardCase::statistical(
             6,
             "sigma_t = 0 in one channel, 1 in the others, a furnace, hero wavelength",
@@ -168,7 +170,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             EXACT,
             SAMPLES,
             move |run| judged_furnace(run, Some(3.0), true, |source| furnace(hero, source)),
-        ),
+        )
+        .about(["hero_wavelength"]),
         HardCase::statistical(
             6,
             "sigma_t = 0 in one channel, 1 in the others, a furnace, separate solve",
@@ -176,7 +179,8 @@ pub(super) fn cases() -> Vec<HardCase> {
             EXACT,
             SAMPLES,
             move |run| judged_furnace(run, Some(3.0), true, |source| furnace(separate, source)),
-        ),
+        )
+        .about(["separate_solve"]),
     ];
     for ratio in [1.9, 2.0, 2.1] {
         cases.push(HardCase {
@@ -192,6 +196,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 SAMPLES,
                 move |run| two_wavelengths(ratio, run),
             )
+            .about(["shared_distance", "spectral_tracking", "hero_wavelength"])
         });
     }
     cases

@@ -2,7 +2,6 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, PiecewiseConstant};
 use fairflight_sources::Seeded;
@@ -42,7 +41,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "exact",
                 move || thickness(tau),
             )
-            .about([Kind::DoubleParticle, Kind::LineIntegral]),
+            .about(["double_particle", "line_integral"]),
         );
     }
     cases.push(
@@ -59,7 +58,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 Outcome::value(walk.estimate(&field, &mut Seeded::new(9)), (-1.0_f64).exp(), 1e-10)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     );
     cases.push(
         HardCase::statistical(
@@ -74,7 +73,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 judge_walk(&spike(), &Tracking::new(double_particle(), none, rate.expect(LAWFUL)), run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     );
     cases
 }

@@ -1,7 +1,6 @@
 //! Rows 1, 2 and 12: nothing on the ray, nothing of the ray, next to nothing of the ray.
 
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Bounded, Bounds, Clip, Constant, Homogeneous, OpticalThickness, Ray, Vacuum};
 use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
@@ -76,6 +75,24 @@ fn clipped(origin: DVec3, direction: DVec3, length: Option<f64>, exact: f64, tol
     Outcome { passes: closed.passes && (walked - exact).abs() <= tolerance, ..closed }
 }
 
+/// Title, origin, direction, length of the ray, length inside, tolerance.
+type Clipping = (&'static str, DVec3, DVec3, Option<f64>, f64, f64);
+
+/// Rays and the sphere of radius 10 around (0, 0, 10).
+pub(super) fn clips() -> [Clipping; 9] {
+    [
+        ("a segment of length 0", DVec3::ZERO, DVec3::Z, Some(0.0), 0.0, 0.0),
+        ("a segment of length 0 inside", dvec3(0.0, 0.0, 4.0), DVec3::Z, Some(0.0), 0.0, 0.0),
+        ("a ray that grazes the bounds", dvec3(-7.0, 10.0, 10.0), DVec3::X, None, 0.0, 0.0),
+        ("a ray that misses the bounds", dvec3(-7.0, 10.5, 10.0), DVec3::X, None, 0.0, 0.0),
+        ("an origin on the bounds, inwards", DVec3::ZERO, DVec3::Z, None, 20.0, 1e-15),
+        ("an origin on the bounds, outwards", DVec3::ZERO, -DVec3::Z, None, 0.0, 0.0),
+        ("an origin inside", dvec3(0.0, 0.0, 4.0), DVec3::Z, None, 16.0, 1e-15),
+        ("an origin beyond", dvec3(0.0, 0.0, 20.5), DVec3::Z, None, 0.0, 0.0),
+        ("a segment that ends before the bounds", dvec3(0.0, 0.0, -5.0), DVec3::Z, Some(4.0), 0.0, 0.0),
+    ]
+}
+
 pub(super) fn cases() -> Vec<HardCase> {
     let mut cases = vec![
         HardCase::deterministic(
@@ -86,7 +103,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "exact",
             empty_ray,
         )
-        .about([Kind::Woodcock, Kind::DoubleParticle, Kind::LineIntegral]),
+        .about(["woodcock", "double_particle", "line_integral"]),
     ];
     for thickness in [88.0, 745.0, 2000.0] {
         cases.push(
@@ -98,23 +115,10 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "one rounding",
                 move || beside_a_dense_region(thickness),
             )
-            .about([Kind::Woodcock, Kind::DoubleParticle, Kind::LineIntegral]),
+            .about(["woodcock", "double_particle", "line_integral"]),
         );
     }
-    // Title, origin, direction, length of the ray, length inside, tolerance.
-    type Clipping = (&'static str, DVec3, DVec3, Option<f64>, f64, f64);
-    let clips: [Clipping; 9] = [
-        ("a segment of length 0", DVec3::ZERO, DVec3::Z, Some(0.0), 0.0, 0.0),
-        ("a segment of length 0 inside", dvec3(0.0, 0.0, 4.0), DVec3::Z, Some(0.0), 0.0, 0.0),
-        ("a ray that grazes the bounds", dvec3(-7.0, 10.0, 10.0), DVec3::X, None, 0.0, 0.0),
-        ("a ray that misses the bounds", dvec3(-7.0, 10.5, 10.0), DVec3::X, None, 0.0, 0.0),
-        ("an origin on the bounds, inwards", DVec3::ZERO, DVec3::Z, None, 20.0, 1e-15),
-        ("an origin on the bounds, outwards", DVec3::ZERO, -DVec3::Z, None, 0.0, 0.0),
-        ("an origin inside", dvec3(0.0, 0.0, 4.0), DVec3::Z, None, 16.0, 1e-15),
-        ("an origin beyond", dvec3(0.0, 0.0, 20.5), DVec3::Z, None, 0.0, 0.0),
-        ("a segment that ends before the bounds", dvec3(0.0, 0.0, -5.0), DVec3::Z, Some(4.0), 0.0, 0.0),
-    ];
-    for (title, origin, direction, length, inside, tolerance) in clips {
+    for (title, origin, direction, length, inside, tolerance) in clips() {
         let exact = f64::exp(-0.5 * inside);
         cases.push(
             HardCase::deterministic(
@@ -125,7 +129,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 if tolerance == 0.0 { "exact" } else { "a few roundings" },
                 move || clipped(origin, direction, length, exact, tolerance),
             )
-            .about([Kind::DoubleParticle]),
+            .about(["double_particle"]),
         );
     }
     cases

@@ -1,7 +1,7 @@
 //! Row 10: rays in faces, along axes, through edges and corners of voxels.
 
+use super::by_kind::Profile;
 use super::{HardCase, LAWFUL, Outcome};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::DenseLattice;
 use fairflight_media::{
@@ -92,8 +92,9 @@ fn discontinuity() -> Outcome {
     Outcome::value(ours, (-1.0_f64).exp(), 0.0)
 }
 
-pub(super) fn cases() -> Vec<HardCase> {
-    let rays: [(&str, DVec3, DVec3); 8] = [
+/// Rays that run where voxels meet.
+fn rays() -> [(&'static str, DVec3, DVec3); 8] {
+    [
         ("along x, negative zeros", dvec3(-1.0, 1.5, 2.5), dvec3(1.0, -0.0, -0.0)),
         ("against z", dvec3(1.5, 0.5, 9.0), dvec3(0.0, -0.0, -1.0)),
         ("in the plane of faces", dvec3(-1.0, 2.0, 1.3), dvec3(1.0, 0.0, 0.25)),
@@ -102,8 +103,27 @@ pub(super) fn cases() -> Vec<HardCase> {
         ("along an edge of the bounds", dvec3(4.0, 4.0, -2.0), DVec3::Z),
         ("through edges", dvec3(-1.0, -1.0, 0.5), dvec3(1.0, 1.0, 0.0)),
         ("through corners", DVec3::splat(-1.0), DVec3::ONE),
-    ];
-    let grids = rays.map(|(title, origin, direction)| {
+    ]
+}
+
+/// The profiles of these rays, in the cells of a grid.
+pub(super) fn profiles() -> Vec<(String, Profile)> {
+    let profile = |(title, origin, direction): (&str, DVec3, DVec3)| {
+        let lattice = DenseLattice::of([5, 5, 5], |[x, y, z]| affine(dvec3(x as f64, y as f64, z as f64)));
+        let voxels = Voxels::new(lattice, DAffine3::IDENTITY, 1.0).expect(LAWFUL);
+        let (min, max) = (DVec3::ZERO, DVec3::splat(4.0));
+        let grid = BoundGrid::build(&voxels, (min, max), [4, 4, 4]).expect(LAWFUL);
+        let clip = Bounds::aligned_box(min, max).expect(LAWFUL).clip(origin, direction, None).expect(LAWFUL);
+        let ray = Ray::new(voxels, &clip.expect(LAWFUL));
+        let mut cells = Vec::new();
+        grid.cells_along(ray.local_line(), ray.length(), &mut cells);
+        (title.to_owned(), Profile::voxels(ray, cells))
+    };
+    rays().map(profile).to_vec()
+}
+
+pub(super) fn cases() -> Vec<HardCase> {
+    let grids = rays().map(|(title, origin, direction)| {
         HardCase::deterministic(
             10,
             format!("bounds in cells of a ray {title}"),
@@ -112,9 +132,9 @@ pub(super) fn cases() -> Vec<HardCase> {
             "exact",
             move || in_boxes(origin, direction),
         )
-        .about([Kind::ResidualCells, Kind::JitteredRatio])
+        .about(["residual_cells", "jittered_ratio"])
     });
-    let mut cases: Vec<HardCase> = rays
+    let mut cases: Vec<HardCase> = rays()
         .into_iter()
         .map(|(title, origin, direction)| {
             HardCase::deterministic(
@@ -125,7 +145,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "1e-13 relative",
                 move || through(origin, direction),
             )
-            .about([Kind::DoubleParticle])
+            .about(["double_particle"])
         })
         .collect();
     cases.extend(grids);
@@ -138,7 +158,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "exact",
             discontinuity,
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     );
     cases
 }

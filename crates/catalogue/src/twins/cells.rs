@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin, freeflight};
-use crate::Kind;
 use fairflight_freeflight::{Flight, FreeFlight, JitteredFlight};
 use fairflight_laws::freeflight::Weights;
 use fairflight_media::{Bounded, Constant, Majorant};
@@ -80,7 +79,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = theory_of(&field, &JitteredRatio::new(1.0).expect(LAWFUL), &[]);
                 judged(&field, &ContinuesTooRarely, right, run)
             },
-        ).about([Kind::JitteredRatio]),
+        ).about(["jittered_ratio"]),
         // A stratum is passed with 1 − R for e^−R: escape has the probability 1/16 for e^−2 = 0.1353.
         Twin::new(
             "jittered free flight",

@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Rejection, Twin};
-use crate::Kind;
 use fairflight_collision::{Albedo, Branch, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_laws::{Run, collision};
 use fairflight_media::{Constant, Extinction, Vacuum};
@@ -103,7 +102,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 2, sigma_samp 3/4",
             (50_000, Evident::Mean { z: 105.0 }),
             |run| wrong_weight(|r| (1.0 - r).abs(), 0.75, run),
-        ).about([Kind::DoubleParticle]),
+        ).about(["double_particle"]),
         // E = exp(−σ_samp L) where r > 1: exp(−1.5) for exp(−2).
         Twin::new(
             "double particle",
@@ -112,7 +111,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 2, sigma_samp 3/4",
             (50_000, Evident::Mean { z: 39.6 }),
             |run| wrong_weight(|r| (1.0 - r).max(0.0), 0.75, run),
-        ).about([Kind::DoubleParticle]),
+        ).about(["double_particle"]),
         // |1 − r| = 1.5 is no probability: the weight is −1 for sure, E = exp(−2 · 0.2) for exp(−0.5). Judged with the
         // moments of the version that is defined there, Var/T² = exp(0.2 · 2.5²) − 1 = 2.49.
         Twin::new(
@@ -122,7 +121,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 0.5, sigma_samp 0.4, albedo 0",
             (200_000, Evident::Mean { z: 29.8 }),
             |run| outside_the_terminating_domain(1.0, 0.5, 0.4, run),
-        ).about([Kind::SingleParticle]),
+        ).about(["single_particle"]),
         // E = 1, what a renderer makes of hard case 5, for e; Var/T² = exp(4 · 0.25²) − 1 = 0.284.
         Twin::new(
             "single particle",
@@ -131,7 +130,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t −0.5, length 2, sigma_samp 2, albedo 0",
             (50_000, Evident::Mean { z: 265.0 }),
             |run| outside_the_terminating_domain(-0.5, 2.0, 2.0, run),
-        ).about([Kind::SingleParticle]),
+        ).about(["single_particle"]),
         // a = 0.5, r = 1.25: only walks without a collision survive, E = exp(−1.6) for exp(−2).
         Twin::new(
             "single particle",
@@ -145,6 +144,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&field(), &Tracking::new(model, Vacuum::new(2.0), sampling), &[]);
                 judged(&field(), &StopsBelowZero { model, sampling }, theory, run)
             },
-        ).about([Kind::SingleParticle]),
+        ).about(["single_particle"]),
     ]
 }

@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
-use crate::Kind;
 use fairflight_media::{AnalyticCosine, Clip, Extinction, PiecewiseConstant, PiecewiseLinear, Ray};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{
@@ -94,7 +93,7 @@ fn on_two_values(
         let theory = theory_of(&field, &UnbiasedRayMarching::new(comb, roulette), &[]);
         judged(&field, &wrong(Wrong::right(comb, roulette)), theory, run)
     })
-    .about([Kind::UnbiasedRayMarching])
+    .about(["unbiased_ray_marching"])
 }
 
 /// Order with the variate divided by the cumulative probability that it was just compared with.
@@ -244,7 +243,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&ray, &UnbiasedRayMarching::new(comb, Roulette::KETTUNEN), &[]);
                 judged(&ray, &ShiftedByALength { teeth: 12 }, theory, run)
             },
-        ).about([Kind::UnbiasedRayMarching]),
+        ).about(["unbiased_ray_marching"]),
         Twin::new(
             "telescoping",
             "level_without_its_odd_half",
@@ -258,6 +257,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&tent, &right, &[]);
                 judged(&tent, &EvenHalfOnly { comb: right.comb(), level_ratio }, theory, run)
             },
-        ).about([Kind::Telescoping]),
+        ).about(["telescoping"]),
     ]
 }

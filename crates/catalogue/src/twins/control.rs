@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Constant, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
@@ -80,7 +79,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 judged(&field, &twin, theory, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         // Every r is zero: the estimate is exp(−τ of the fit), wherever the points fell. The z is measured.
         Twin::new(
             "double particle, explorers",
@@ -98,6 +97,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 judged(&field, &FitsItsOwnWalk { sampling }, theory, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     ]
 }

@@ -133,7 +133,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let (right, also) = (Woodcock::new(cells.clone()), cells.breakpoints());
                 judged(&field, (&right, &also), Weights::One, &PreviousCell(cells), "escaped", run)
             },
-        ),
+        ).about(["woodcock_flight"]),
         // r = 5/4, energies ±3/2: E = (1 − e^−1)/1.5 = 0.4214 for 0.6321; the variance is 3 (1 − e^−½) − 0.6321² = 0.7808.
         Twin::new(
             "free flight by tracking",
@@ -142,7 +142,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 1, sigma_samp 0.8, non-terminating",
             (50_000, Evident::Mean { z: 53.3 }),
             |run| without_energy([|_| 1.0, |energy| energy], "collided", run),
-        ),
+        ).about(["tracking_flight"]),
         // E = exp(−0.8 · 5/6) = 0.5134 for e^−1 = 0.3679; the variance is e^−½ − e^−2 = 0.4712.
         Twin::new(
             "free flight by tracking",
@@ -151,7 +151,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 1, sigma_samp 0.8, non-terminating",
             (50_000, Evident::Mean { z: 47.4 }),
             |run| without_energy([|energy| energy, |_| 1.0], "escaped", run),
-        ),
+        ).about(["tracking_flight"]),
         Twin::new(
             "free flight by woodcock",
             "flight_collides_in_empty_space",
@@ -168,6 +168,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let rejected = ours.distance().is_none() && twin.distance().is_some();
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },
-        ),
+        ).about(["woodcock_flight"]),
     ]
 }

@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
-use crate::Kind;
 use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{LineIntegral, TransmittanceEstimator, Woodcock};
@@ -74,7 +73,7 @@ fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> 
         let theory = theory_of(&field, &right, &[]);
         judged(&field, &WrongFirstStep { splits: 4, majorant: 1.0, first }, theory, run)
     })
-    .about([Kind::LineIntegral])
+    .about(["line_integral"])
 }
 
 /// Lists the twins.

@@ -2,7 +2,6 @@
 
 use super::trial::LAWFUL;
 use super::{Evident, Rejection, Twin};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, Vacuum};
 use fairflight_sources::{Scripted, UniformSource};
@@ -44,6 +43,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 )
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     ]
 }

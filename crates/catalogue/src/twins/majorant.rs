@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged_as_coin, theory_of};
 use super::{Evident, Rejection, Twin};
-use crate::Kind;
 use fairflight_laws::transmittance::Admitted;
 use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, Watched};
 use fairflight_sources::{Scripted, UniformSource};
@@ -47,7 +46,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 Woodcock.estimate(&watched, &mut Scripted::new([-(-1.5_f64).exp_m1(), 0.0]));
                 Rejection { rejected: statistical.rejected && watched.violation().is_some(), ..statistical }
             },
-        ).about([Kind::Woodcock]),
+        ).about(["woodcock"]),
         Twin::new(
             "woodcock",
             "collides_in_empty_space",
@@ -61,6 +60,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let rejected = ours == 1.0 && collides_as_printed(0.0, 1.0, 0.0);
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },
-        ).about([Kind::Woodcock]),
+        ).about(["woodcock"]),
     ]
 }

@@ -22,7 +22,6 @@ mod trial;
 mod variance;
 mod vpl;
 
-use crate::Kind;
 use fairflight_laws::Run;
 
 /// What a check said of a twin.
@@ -68,8 +67,8 @@ pub struct Twin {
     pub id: &'static str,
     /// The estimator that it is a twin of, in words.
     pub of: &'static str,
-    /// The kind of that estimator, whose law rejects it; none for a twin of a flight, a phase function or an integrator.
-    pub kinds: Vec<Kind>,
+    /// The kinds of estimator, sampler or integrator whose law rejects it; none for a twin of a phase function or a point set.
+    pub kinds: Vec<&'static str>,
     /// The wrong line, and who wrote it.
     pub mistake: &'static str,
     /// Where it is tried.
@@ -93,9 +92,10 @@ impl Twin {
         Self { of, kinds: Vec::new(), id, mistake, profile, samples, evident, function: Box::new(function) }
     }
 
-    /// The same, about these kinds of estimator.
-    fn about(self, kinds: impl Into<Vec<Kind>>) -> Self {
-        Self { kinds: kinds.into(), ..self }
+    /// The same, which the law of these kinds rejects.
+    fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
+        self.kinds.extend(kinds);
+        self
     }
 
     /// Tries the twin.

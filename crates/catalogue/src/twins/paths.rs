@@ -6,7 +6,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Rejection, Twin};
-use crate::Kind;
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{single_scattering, slab};
 use fairflight_collision::{Albedo, DoubleParticle};
@@ -254,7 +253,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let derived = right.mean * (1.0 - 1.0 / SIGMA_SAMP);
                 tried(|source| twin.radiance(&cube.line, source), &right, derived, run)
             },
-        ).about([Kind::DoubleParticle]),
+        ).about(["single_scattering"]).about(["double_particle"]),
         // dθ for ds: the integrand is weighted with D/(D² + (s − s_l)²).
         Twin::new(
             "source-driven sampling",
@@ -273,7 +272,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = cube.reference(cube.greatest() * cube.aside() * angle);
                 tried(|source| cube.by_source(|_s| 1.0 / angle, source), &right, derived, run)
             },
-        ),
+        ).about(["single_scattering"]),
         // The weights sum to σ/(σ + n p) + p/(p + σ).
         Twin::new(
             "MIS of attenuation and source",
@@ -294,7 +293,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = cube.reference((1.5 + SAMPLES) * cube.greatest() / SIGMA_SAMP);
                 tried(|source| cube.by_both(of_source, source), &right, derived, run)
             },
-        ),
+        ).about(["single_scattering"]),
         // The radiance of a slab without absorption.
         Twin::new(
             "importons",
@@ -303,7 +302,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "a slab of tau 1, albedo 0.9, diffusely lit",
             (100_000, Evident::Mean { z: 49.7 }),
             without_albedo,
-        ),
+        ).about(["particle_tracer"]),
         // E = (1 − p_V) + p_V ∫ Π (1 − σ_t(s_j)/majorant) du over the steps s_j of one variate u: 0.367 for 0.423.
         Twin::new(
             "line integral",
@@ -316,6 +315,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_of(&field, &LineIntegral::new(4).expect(LAWFUL), &[]);
                 judged(&field, &StratifiesEveryStep { splits: 4, majorant: 1.0 }, theory, run)
             },
-        ).about([Kind::LineIntegral]),
+        ).about(["line_integral"]),
     ]
 }

@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant, Vacuum,
@@ -59,7 +58,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
         // E = exp(−1) for exp(−1.25); its variance is that of the first cell, exp(0.5) − 1.
         Twin::new(
             "double particle",
@@ -73,6 +72,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 judged(&field(), &twin, theory, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     ]
 }

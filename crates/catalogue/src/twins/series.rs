@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
-use crate::Kind;
 use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{
@@ -102,7 +101,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = PSeries::new(PSeriesVersion::Cmf, 4.0).expect(LAWFUL);
                 judged(&field(), &CappedOrder { pivot: 4.0 }, theory_of(&field(), &right, &[]), run)
             },
-        ).about([Kind::PSeries]),
+        ).about(["p_series"]),
         // The term of the start is not random: exp(−2·1.25)/exp(−1.25) = 0.287 of T is missing, and the variance is right.
         Twin::new(
             "next flight",
@@ -115,7 +114,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let field = bounded(1.25);
                 judged(&field, &WithoutTheStart, theory_of(&field, &right, &[]), run)
             },
-        ).about([Kind::NextFlight]),
+        ).about(["next_flight"]),
         // Every factor is then (μ − σ_t)/(μ − σ_t) = 1 here. In (2) of `AdaptiveRatio` r no longer cancels: behind a collision
         // in the second cell f is right, in the first it is a(x) = 0.4096 exp(x − 1), with a′ = a and
         // a(1) = exp(−1.25) + 0.25 exp(−0.25) (1 − exp(−1)); from the start E = 0.425 for 0.287. The z is measured.
@@ -130,6 +129,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let field = bounded(1.25);
                 judged(&field, &KnowsTheLookup { floor: 0.1 }, theory_of(&field, &right, &[]), run)
             },
-        ).about([Kind::AdaptiveRatio]),
+        ).about(["adaptive_ratio"]),
     ]
 }

@@ -126,7 +126,8 @@ pub(super) fn twins() -> Vec<Twin> {
             PROFILE,
             (20_000, Evident::Mean { z: 45.9 }),
             |run| weighed(|ratio, size, _| ratio / size, run),
-        ),
+        )
+        .about(["spectral_tracking"]),
         // 9/8 (1 − e^(−5/3))/(5/6) = 1.0950.
         Twin::new(
             "spectral flight, max scheme",
@@ -135,7 +136,8 @@ pub(super) fn twins() -> Vec<Twin> {
             PROFILE,
             (10_000, Evident::Mean { z: 57.9 }),
             |run| weighed(|ratio, size, other| ratio * (size + other) / other, run),
-        ),
+        )
+        .about(["spectral_tracking"]),
         // Over n null collisions before: Σ_n w P(n) with w = 2/(1 + 2^n), P(n) = (0.75 · 4^−n + 0.5 · 2^−n)/2 times the
         // probability that a Poisson variate of mean 2 exceeds n: 0.6394 for
         // 0.7769, at a standard deviation of 0.4405.
@@ -149,6 +151,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = HeroWavelength::new(Constant::new(1.0, 2.0).expect(LAWFUL));
                 judged(&right, Weights::UpTo(2), &ForgetsTheCollision, run)
             },
-        ),
+        )
+        .about(["hero_wavelength"]),
     ]
 }

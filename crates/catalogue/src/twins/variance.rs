@@ -2,7 +2,6 @@
 
 use super::trial::{LAWFUL, judged, theory_of};
 use super::{Evident, Twin};
-use crate::Kind;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
 use fairflight_media::{Constant, PiecewiseConstant, RayQuadrature, Tolerance};
 use fairflight_transmittance::{ProductLaw, Theory, Tracking};
@@ -47,6 +46,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 judged(&field, &estimator, wrong, run)
             },
         )
-        .about([Kind::DoubleParticle]),
+        .about(["double_particle"]),
     ]
 }

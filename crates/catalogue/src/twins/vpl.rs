@@ -174,6 +174,7 @@ pub(super) fn twins() -> Vec<Twin> {
         Twin::new("compensation", id, text, profile, (samples, Evident::Mean { z }), move |run| {
             tried(&scene(), mistake, run)
         })
+        .about(["vpl"])
     };
     let two: fn() -> Local = || tiny::medium(2);
     let isotropic: fn() -> Local = || tiny::isotropic(2);

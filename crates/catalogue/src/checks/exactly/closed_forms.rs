@@ -3,7 +3,6 @@
 use super::super::media::{analytic_cosine, voxels};
 use super::super::specimen::SpecimenField;
 use super::{Check, LAWFUL, check};
-use crate::Kind;
 use fairflight_freeflight::{FreeFlight, Inversion, Newton, Regular};
 use fairflight_laws::CheckResult;
 use fairflight_laws::exact::orders::{self, mean_and_variance};
@@ -28,27 +27,27 @@ pub(super) fn checks() -> Vec<Check> {
         integral("eq21_seed_ray", seed_ray()),
         integral("eq21_oblique_ray", analytic_cosine(dvec3(-9.0, 3.0, -4.0), dvec3(0.55, -0.2, 0.81))),
         integral("voxels", voxels()),
-        inverse("inversion", "constant", constant(), Inversion),
-        inverse("inversion", "piecewise_constant", steps(), Inversion),
-        inverse("inversion", "piecewise_linear", tent(), Inversion),
-        inverse("newton", "piecewise_constant", steps(), Newton),
-        inverse("newton", "piecewise_linear", tent(), Newton),
-        inverse("newton", "eq21_seed_ray", seed_ray(), Newton),
-        inverse("newton", "voxels", voxels(), Newton),
-        inverse("regular", "piecewise_constant", steps(), Regular),
-        inverse("regular", "piecewise_linear", tent(), Regular),
-        inverse("regular", "voxels", voxels(), Regular),
+        inverse("inversion_flight", "inversion", "constant", constant(), Inversion),
+        inverse("inversion_flight", "inversion", "piecewise_constant", steps(), Inversion),
+        inverse("inversion_flight", "inversion", "piecewise_linear", tent(), Inversion),
+        inverse("newton_flight", "newton", "piecewise_constant", steps(), Newton),
+        inverse("newton_flight", "newton", "piecewise_linear", tent(), Newton),
+        inverse("newton_flight", "newton", "eq21_seed_ray", seed_ray(), Newton),
+        inverse("newton_flight", "newton", "voxels", voxels(), Newton),
+        inverse("regular_flight", "regular", "piecewise_constant", steps(), Regular),
+        inverse("regular_flight", "regular", "piecewise_linear", tent(), Regular),
+        inverse("regular_flight", "regular", "voxels", voxels(), Regular),
     ];
     checks.push(variance("next flight", "ratio", Scoring::Ratio, NextFlight::new(NextFlightVersion::Ratio)));
     checks.push(variance("next flight", "delta", Scoring::Delta, NextFlight::new(NextFlightVersion::Delta)));
     checks.push(variance("unidirectional", "balance", Scoring::Unidirectional, Unidirectional));
     checks.push(
-        check("mean of combs", "combs", "piecewise linear", mean_of_combs).about([Kind::UnbiasedRayMarching]),
+        check("mean of combs", "combs", "piecewise linear", mean_of_combs).about(["unbiased_ray_marching"]),
     );
     for stop in [0.2, 0.9] {
         let name = format!("orders of combs, stop {stop}");
         let orders = check(&name, "combs", "two cells", move || orders(stop));
-        checks.push(orders.about([Kind::UnbiasedRayMarching]));
+        checks.push(orders.about(["unbiased_ray_marching"]));
     }
     checks
 }
@@ -72,6 +71,7 @@ fn integral<F: SpecimenField + OpticalThickness>(medium: &str, field: F) -> Chec
 }
 
 fn inverse<F: SpecimenField + OpticalThickness, E: FreeFlight<F> + Send + Sync + 'static>(
+    kind: &'static str,
     name: &str,
     medium: &str,
     field: F,
@@ -81,6 +81,7 @@ fn inverse<F: SpecimenField + OpticalThickness, E: FreeFlight<F> + Send + Sync +
     check(&format!("depth of {name}/{medium}"), &words, medium, move || {
         agree(deviation_of_inverse(&field, &sampler), thickness::GRANTED)
     })
+    .about([kind])
 }
 
 /// The closed variance of an estimator that scores on the way, below and above the field, against its renewal equation.
@@ -98,7 +99,7 @@ where
         ];
         agree(greatest(deviations), renewal::GRANTED)
     })
-    .about([Kind::NextFlight])
+    .about(["next_flight"])
 }
 
 fn deviation_of_variance<'f, F: OpticalThickness + Breakpoints + Majorant, E: ClosedForm<&'f F>>(

@@ -25,9 +25,11 @@ const GRANTED: f64 = 1e-13;
 pub(super) fn checks() -> Vec<Check> {
     let lights = "virtual point lights";
     vec![
-        check("connection/bounded and excess are the whole", lights, "tiny scenes", complement),
-        check("connection/roulette of compensation", "compensation", "a floor and a ceiling", roulette),
-        check("emission/sides and shares", lights, "lamps", emission),
+        check("connection/bounded and excess are the whole", lights, "tiny scenes", complement)
+            .about(["vpl"]),
+        check("connection/roulette of compensation", "compensation", "a floor and a ceiling", roulette)
+            .about(["vpl"]),
+        check("emission/sides and shares", lights, "lamps", emission).about(["vpl"]),
         check("emission/fresnel", "smooth surfaces", "glass", fresnel),
     ]
 }

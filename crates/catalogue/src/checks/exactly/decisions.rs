@@ -1,7 +1,7 @@
 //! Each decision of a walk has its probability, over all of its variate.
 
 use super::{Check, LAWFUL, check};
-use crate::{Kind, checks::Law};
+use crate::checks::Law;
 use fairflight_collision::{Albedo, SingleOutcome, SingleParticle, Version, Woodcock as WoodcockModel};
 use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock as WoodcockFlight};
 use fairflight_laws::CheckResult;
@@ -26,16 +26,16 @@ pub(super) fn checks() -> Vec<Check> {
     let single = |version| move |albedo| SingleParticle { version, albedo };
     vec![
         outcomes("woodcock", |albedo| WoodcockModel { albedo }),
-        outcomes("terminating", single(Version::Terminating)).about([Kind::SingleParticle]),
-        outcomes("non-terminating", single(Version::NonTerminating)).about([Kind::SingleParticle]),
-        outcomes("adaptive", single(Version::Adaptive)).about([Kind::SingleParticle]),
+        outcomes("terminating", single(Version::Terminating)).about(["single_particle"]),
+        outcomes("non-terminating", single(Version::NonTerminating)).about(["single_particle"]),
+        outcomes("adaptive", single(Version::Adaptive)).about(["single_particle"]),
         check("decision/woodcock", "woodcock", "constant", || {
             one_collision(|share, source, field| {
                 let scored = |estimate: f64| (estimate, 1.0 - share);
                 scored(Woodcock.estimate(&field, source))
             })
         })
-        .about([Kind::Woodcock]),
+        .about(["woodcock"]),
         check("decision/next flight after delta tracking", "next flight", "constant", || {
             one_collision(|share, source, field| {
                 let from = |distance: f64| (-MAJORANT * distance).exp();
@@ -43,15 +43,17 @@ pub(super) fn checks() -> Vec<Check> {
                 (estimate, from(1.0) + (1.0 - share) * from(1.0 - COLLISION))
             })
         })
-        .about([Kind::NextFlight]),
+        .about(["next_flight"]),
         check("decision/free flight by woodcock", "free flight by woodcock", "constant", || {
             one_collision(|share, source, field| {
                 let flight = WoodcockFlight::new(Constant::new(MAJORANT, 1.0).expect(LAWFUL));
                 let collides = flight.sample(&field, source).distance().is_some();
                 (if collides { 1.0 } else { 0.0 }, share)
             })
-        }),
-        check("decision/free flight by jittered", "free flight by jittered", "constant", jittered_flight),
+        })
+        .about(["woodcock_flight"]),
+        check("decision/free flight by jittered", "free flight by jittered", "constant", jittered_flight)
+            .about(["jittered_flight"]),
         check("decision/roulette of a walk", "roulette of walks", "homogeneous", roulette_of_a_walk),
     ]
 }

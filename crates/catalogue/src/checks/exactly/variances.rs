@@ -1,7 +1,6 @@
 //! Closed variances on steps of constant extinction, where each is an expression of a line, a sum, or an average over all draws.
 
 use super::{Check, LAWFUL, check};
-use crate::Kind;
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_laws::CheckResult;
 use fairflight_laws::exact::decisions::expectations;
@@ -29,7 +28,7 @@ pub(super) fn checks() -> Vec<Check> {
             // A success of probability T.
             [(theory(&Woodcock), thickness().exp_m1())]
         })
-        .about([Kind::Woodcock]),
+        .about(["woodcock"]),
         on_steps("variance of tracking", "double particle, single particle", || {
             let double = DoubleParticle { albedo: Albedo::default() };
             // szirmay-kalos-2017 eq. 16: E[W²] − 1 = r² − 2r, r² above the square of the mean.
@@ -50,7 +49,7 @@ pub(super) fn checks() -> Vec<Check> {
                 (theory(&survives), of_single.exp_m1()),
             ]
         })
-        .about([Kind::DoubleParticle, Kind::SingleParticle]),
+        .about(["double_particle", "single_particle"]),
         on_steps("variance of points", "generalised poisson, p_series", || {
             // Points anywhere, X = 2 σ_t: of N ~ Poisson(λ) factors (p − X)/λ, and of N ~ Poisson(p) factors 1 − X/p.
             let (pivot, rate, length) = (1.3, 0.8, 2.0);
@@ -63,9 +62,9 @@ pub(super) fn checks() -> Vec<Check> {
                 (theory(&series(PSeriesVersion::NextFlight, pivot)), double_sum(pivot)),
             ]
         })
-        .about([Kind::GeneralisedPoisson, Kind::PSeries]),
+        .about(["generalised_poisson", "p_series"]),
         check("mean and variance of telescoping", "telescoping", "four cells", telescoping)
-            .about([Kind::Telescoping]),
+            .about(["telescoping"]),
     ]
 }
 

@@ -45,4 +45,5 @@ fn adjoint(name: &str, (samples, photons): (u64, u32), lights: Lights<f64>) -> C
         check(&scene, &walk, photons, run)
             .unwrap_or_else(|error| CheckResult::exact(false, format!("refused: {error}")))
     })
+    .about(["particle_tracer", "transmittance"])
 }

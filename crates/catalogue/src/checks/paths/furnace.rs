@@ -1,7 +1,6 @@
 //! A furnace: without absorption, and lit by the same radiance from all sides, every ray sees that radiance.
 
 use super::{Check, LAWFUL, radiance};
-use crate::Kind;
 use crate::paths::check;
 use fairflight_collision::Version;
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh};
@@ -139,6 +138,7 @@ where
         let mut tracer = ParticleTracer::new(&volume, &lights, walk.clone());
         check(&mut tracer, &lines(), &reference(samples), run)
     })
+    .about(["particle_tracer"])
 }
 
 /// The radiance 1; where energies do not vary, exactly.
@@ -155,7 +155,7 @@ fn splitting(id: &str, starts: Starts, sigma_samp: f64, samples: u64) -> Check {
         let mut tracer = LineSplitting::new(&volume, &lights, walk, (line, starts, 1.0));
         check(&mut tracer, &lines(), &reference(samples), run)
     })
-    .about([Kind::LineIntegral])
+    .about(["line_splitting", "line_integral"])
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Single scattering: every way to choose distances, with every walk.
 
 use super::{Check, LAWFUL, radiance};
-use crate::Kind;
 use crate::paths::{check, single_scattering};
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
 use fairflight_media::phase::{HenyeyGreenstein, Rayleigh};
@@ -153,21 +152,21 @@ where
                 .expect(LAWFUL);
         check(&mut integrator, lines, &single_scattering::reference(volume, lights, lines), run)
     })
-    .about(W::KINDS)
+    .about(["single_scattering", W::KIND])
 }
 
 /// The estimator whose walk runs along a camera ray.
 trait Walks {
-    const KINDS: [Kind; 1];
+    const KIND: &'static str;
 }
 impl Walks for Regular {
-    const KINDS: [Kind; 1] = [Kind::Regular];
+    const KIND: &'static str = "regular";
 }
 impl Walks for Tracked<DoubleParticle> {
-    const KINDS: [Kind; 1] = [Kind::DoubleParticle];
+    const KIND: &'static str = "double_particle";
 }
 impl Walks for Tracked<SingleParticle> {
-    const KINDS: [Kind; 1] = [Kind::SingleParticle];
+    const KIND: &'static str = "single_particle";
 }
 
 fn by_line<M: LineThickness + Send + Sync + 'static, P: PhaseFunction + Send + Sync + 'static>(
@@ -182,7 +181,7 @@ fn by_line<M: LineThickness + Send + Sync + 'static, P: PhaseFunction + Send + S
         let mut integrator = LineSampled::new(volume, lights, (line, starts, 1.0), Regular);
         check(&mut integrator, lines, &single_scattering::reference(volume, lights, lines), run)
     })
-    .about([Kind::LineIntegral])
+    .about(["single_scattering", "line_integral"])
 }
 
 /// A point light in eq. 21, where that is dense, one unit beside one of the rays, before a background.

@@ -1,7 +1,6 @@
 //! Plane-parallel slabs: all orders of scattering against the doubling method.
 
 use super::{Check, LAWFUL, radiance, result};
-use crate::Kind;
 use crate::checks::Law;
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{check, judge_estimates, slab};
@@ -146,6 +145,7 @@ where
         let mut tracer = ParticleTracer::new(&volume, &lights, walk.clone());
         check(&mut tracer, &[view.line()], &view.reference(&phase, &legendre, scores), run)
     })
+    .about(["particle_tracer"])
 }
 
 /// Sampled at the rates of eight layers, some above and some below the extinction.
@@ -167,7 +167,7 @@ fn splitting(name: &str, view: View, starts: Starts) -> Check {
         let mut tracer = LineSplitting::new(&volume, &lights, walk, (line, starts, 1.5));
         check(&mut tracer, &[view.line()], &view.reference(&Isotropic, &[1.0], NEVER_NEGATIVE), run)
     })
-    .about([Kind::LineIntegral])
+    .about(["line_splitting", "line_integral"])
 }
 
 /// Each channel of a colour is the gray slab of its own albedo. One run, three verdicts.
@@ -190,4 +190,5 @@ fn coloured(lit: Lit) -> Check {
         });
         CheckResult::of_all(channels)
     })
+    .about(["particle_tracer"])
 }

@@ -62,4 +62,5 @@ fn truncation(counted: bool) -> Check {
         let scores = Scores::TwoValued { high: 1.0 };
         judge_estimates(estimate, &Reference { scores, ..Reference::exact(mean) }, run)
     })
+    .about(["particle_tracer"])
 }

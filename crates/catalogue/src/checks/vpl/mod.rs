@@ -16,10 +16,12 @@ const STRATEGIES: [(Strategy, &str); 3] =
 
 /// All checks of virtual point lights and of paths among surfaces.
 pub(super) fn virtual_point_lights() -> Vec<Check> {
-    let mut checks = local::checks();
-    checks.extend(rooms::checks());
-    checks.extend(ledger::checks());
+    let mut lights = local::checks();
+    lights.extend(rooms::checks());
+    lights.extend(ledger::checks());
+    let of_lights = |check: Check| check.about(["vpl"]);
+    let mut checks: Vec<Check> = lights.into_iter().map(of_lights).collect();
     checks.extend(tracer::checks());
-    checks.extend(bounds::checks());
+    checks.extend(bounds::checks().into_iter().map(of_lights));
     checks
 }

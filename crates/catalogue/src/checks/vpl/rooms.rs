@@ -82,4 +82,5 @@ fn against_paths(name: &str, options: CompensationOptions) -> Check {
         let shadow = Ratio(Uniform::new(3.0).expect(LAWFUL));
         result(&smoky().check_against_paths(replica(options, SMOKY, 3.0, shadow), 8, run), run)
     })
+    .about(["path_tracer"])
 }

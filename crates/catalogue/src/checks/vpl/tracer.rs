@@ -54,6 +54,7 @@ fn of(
     function: impl Fn(Run) -> CheckResult + Send + Sync + 'static,
 ) -> Check {
     Check::new(format!("paths/tracer/{name}"), Law::Radiance, "path tracing", medium, samples, function)
+        .about(["path_tracer"])
 }
 
 fn furnace<G: Geometry<f64> + 'static, M: Medium + 'static, P: PhaseFunction + 'static>(

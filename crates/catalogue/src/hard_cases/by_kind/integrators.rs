@@ -1,0 +1,228 @@
+//! Every integrator by its kind, in a ball of haze before a background of 1.
+
+use crate::hard_cases::variates::End;
+use crate::hard_cases::{HardCase, LAWFUL, Outcome, vacuum};
+use fairflight_collision::Version;
+use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
+use fairflight_media::phase::HenyeyGreenstein;
+use fairflight_media::{Bounds, Homogeneous, Line};
+use fairflight_paths::single_scattering::{Sampling, SharedExplorers, SingleScattering, Technique};
+use fairflight_paths::transport::World;
+use fairflight_paths::{
+    Attenuation, Heuristic, Integrator, LineSplitting, ParticleTracer, PathTracer, Ratio, Uniform, Walk,
+};
+use fairflight_scene::{Background, Lights, NoSurfaces, Volume};
+use fairflight_sources::{LARGEST_VARIATE, Seeded, UniformSource};
+use fairflight_transmittance::{LineIntegral, Regular, Starts};
+use fairflight_vpl::{Emitters, Gather, Ledger, LightPaths, Term, VplIntegrator};
+use glam::{DVec3, dvec3};
+
+/// A homogeneous ball around (0, 0, 10).
+#[derive(Clone, Copy)]
+struct Ball {
+    sigma_t: f64,
+    radius: f64,
+    albedo: f64,
+    anisotropy: f64,
+    /// σ_samp of walks, a majorant.
+    rate: f64,
+}
+
+/// What an integrator sees along a line.
+type Radiance = fn(&Ball, &Line, &mut dyn UniformSource) -> f64;
+
+/// When one estimate is exact.
+#[derive(Clone, Copy, PartialEq)]
+enum Exact {
+    /// Where nothing is absorbed, every path sees the background.
+    Furnace,
+    /// Where nothing is scattered, the thickness in closed form attenuates it.
+    Absorbing,
+    /// Where nothing is met.
+    Vacuum,
+}
+
+const INTEGRATORS: [(&str, Exact, Radiance); 6] = [
+    ("transmittance", Exact::Absorbing, transmittance),
+    ("particle_tracer", Exact::Furnace, particle_tracer),
+    ("line_splitting", Exact::Furnace, line_splitting),
+    ("single_scattering", Exact::Absorbing, single_scattering),
+    ("path_tracer", Exact::Furnace, path_tracer),
+    ("vpl", Exact::Vacuum, vpl),
+];
+
+/// Whether it is one of them.
+pub(super) fn is_integrator(kind: &str) -> bool {
+    INTEGRATORS.iter().any(|(name, ..)| *name == kind)
+}
+
+impl Ball {
+    fn volume(&self) -> Volume<Homogeneous, HenyeyGreenstein, f64> {
+        Volume {
+            medium: Homogeneous::new(self.sigma_t).expect(LAWFUL),
+            bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), self.radius).expect(LAWFUL),
+            albedo: self.albedo,
+            phase: HenyeyGreenstein::new(self.anisotropy).expect(LAWFUL),
+        }
+    }
+
+    fn sampling(&self) -> Uniform {
+        Uniform::new(self.rate).expect(LAWFUL)
+    }
+
+    fn walk(&self) -> Walk<Uniform> {
+        Walk::new(Version::NonTerminating, self.sampling())
+    }
+}
+
+fn lights() -> Lights<f64> {
+    Lights { background: Background { constant: 1.0, maps: Vec::new() }, sources: Vec::new() }
+}
+
+fn transmittance(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    Attenuation::new(&ball.volume(), &lights(), Regular).radiance(line, source)
+}
+
+fn particle_tracer(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    ParticleTracer::new(&ball.volume(), &lights(), ball.walk()).radiance(line, source)
+}
+
+fn line_splitting(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    let splits = LineIntegral::new(4).expect(LAWFUL);
+    let (volume, lights) = (ball.volume(), lights());
+    LineSplitting::new(&volume, &lights, ball.walk(), (splits, Starts::Equidistant, ball.rate))
+        .radiance(line, source)
+}
+
+fn single_scattering(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    let (volume, lights) = (ball.volume(), lights());
+    let sampling = (Sampling::One(Technique::Scattering), 2);
+    let explorers = SharedExplorers::new(7, 1).expect(LAWFUL);
+    SingleScattering::new(&volume, &lights, sampling, Regular, Regular, explorers)
+        .expect(LAWFUL)
+        .radiance(line, source)
+}
+
+fn path_tracer(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    let (volume, lights) = (ball.volume(), lights());
+    let world = World { volume: &volume, surfaces: &NoSurfaces, lights: &lights };
+    PathTracer::new(world, ball.walk(), Ratio(ball.sampling()), Heuristic::Balance).radiance(line, source)
+}
+
+fn vpl(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    let (volume, lights) = (ball.volume(), lights());
+    let world = World { volume: &volume, surfaces: &NoSurfaces, lights: &lights };
+    let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
+    let mut vpls = Vec::new();
+    LightPaths::new(world, &emitters, ball.walk())
+        .trace(1.0, &mut Ledger::empty(), source, |vpl| vpls.push(vpl));
+    let gather = Gather {
+        world,
+        vpls: &vpls,
+        term: Term::Bounded(1.0),
+        heuristic: Heuristic::Balance,
+        walk: ball.walk(),
+        shadow: Regular,
+    };
+    let mean = LocalMean::of(&volume.medium, &volume.bounds, [1; 3], 1);
+    let correction = Compensation::new(CompensationOptions::EXACT, &mean);
+    let pairing = correction.pairing();
+    VplIntegrator::new(gather, (1, pairing), correction).radiance(line, source)
+}
+
+/// Estimates of one case.
+const ESTIMATES: u64 = 16;
+
+/// Rounding of a walk of some thousand collisions.
+const GRANTED: f64 = 1e-12;
+
+/// Each estimate is the background through `inside` of the ball, where that is exact; else finite, and not negative.
+fn seen(index: usize, settings: &[(Ball, Line, f64)]) -> Outcome {
+    let (_, exact, radiance) = INTEGRATORS[index];
+    let mut worst = 0.0_f64;
+    for &(ball, line, inside) in settings {
+        let albedo = if exact == Exact::Furnace { 1.0 } else { 0.0 };
+        let right = match exact {
+            Exact::Furnace => Some(1.0),
+            Exact::Absorbing => Some((-ball.sigma_t * inside).exp()),
+            Exact::Vacuum => (ball.sigma_t * inside == 0.0).then_some(1.0),
+        };
+        // Whatever is scattered where no estimate is exact.
+        let ball = Ball { albedo: if right.is_some() { albedo } else { 0.8 }, ..ball };
+        for seed in 0..ESTIMATES {
+            let found = radiance(&ball, &line, &mut Seeded::new(seed));
+            match right {
+                Some(right) => {
+                    let off = (found - right).abs();
+                    worst = if off.is_nan() { off } else { worst.max(off) };
+                }
+                None if found >= 0.0 && found.is_finite() => {}
+                None => return Outcome::said(false, format!("{found}")),
+            }
+        }
+    }
+    Outcome::said(worst <= GRANTED, format!("off by {worst:.1e} at most"))
+}
+
+/// The variates at one end, and then their middle.
+fn at_the_ends(index: usize) -> Outcome {
+    let (.., radiance) = INTEGRATORS[index];
+    let ball = Ball { sigma_t: 1.0, radius: 1.0, albedo: 0.8, anisotropy: 0.5, rate: 1.5 };
+    for variate in [0.0, LARGEST_VARIATE] {
+        for left in 1..5 {
+            let found = radiance(&ball, &THROUGH, &mut End { variate, left });
+            if !found.is_finite() {
+                return Outcome::said(false, format!("{found} for {left} variates of {variate}"));
+            }
+        }
+    }
+    Outcome::said(true, "finite")
+}
+
+/// Through the middle.
+const THROUGH: Line = Line { origin: DVec3::ZERO, direction: DVec3::Z };
+
+/// All cases of integrators.
+pub(super) fn cases(own: &[HardCase]) -> Vec<HardCase> {
+    let haze = Ball { sigma_t: 1.0, radius: 1.0, albedo: 1.0, anisotropy: 0.5, rate: 1.2 };
+    let ball = |sigma_t: f64, radius: f64, rate: f64| Ball { sigma_t, radius, rate, ..haze };
+    let nothing = vec![(ball(0.0, 1e100, 1e-100), THROUGH, 2e100)];
+    let beside = [44.0, 372.5, 1000.0].map(|rate| (ball(0.0, 1.0, rate), THROUGH, 2.0)).to_vec();
+    let thick =
+        [1e-12, 1e-3, 1.0, 50.0].map(|tau: f64| (ball(0.5 * tau, 1.0, 0.6 * tau), THROUGH, 2.0)).to_vec();
+    let clipped = vacuum::clips()
+        .into_iter()
+        .filter(|(.., length, _, _)| length.is_none())
+        .map(|(_, origin, direction, _, inside, _)| {
+            (ball(0.5, 10.0, 0.6), Line { origin, direction }, inside)
+        })
+        .collect();
+    let lobes = [0.0, 1e-7, 1e-4, 0.999_999]
+        .into_iter()
+        .flat_map(|g: f64| [g, -g])
+        .map(|anisotropy| (Ball { anisotropy, ..haze }, THROUGH, 2.0))
+        .collect();
+    let rows: [(u32, &str, Vec<(Ball, Line, f64)>); 5] = [
+        (1, "nothing in a ball of radius 1e100", nothing),
+        (2, "nothing in a ball, rates of optical thickness 88, 745 and 2000", beside),
+        (8, "balls of optical thickness 1e-12 to 50", thick),
+        (12, "rays that graze, miss, start on, in and beyond a ball", clipped),
+        (16, "anisotropies 0, 1e-7, 1e-4 and 0.999999 of either sign", lobes),
+    ];
+    let mut cases = Vec::new();
+    for (index, &(kind, ..)) in INTEGRATORS.iter().enumerate() {
+        let is_met =
+            |number| own.iter().any(|case: &HardCase| case.number == number && case.kinds.contains(&kind));
+        for (number, what, settings) in rows.iter().filter(|(number, ..)| !is_met(*number)) {
+            let (title, settings) = (format!("{what}: {kind}"), settings.clone());
+            let exact = "the background: 1, or attenuated; finite where that is no single estimate's answer";
+            let case =
+                HardCase::deterministic(*number, title, kind, exact, "1e-12", move || seen(index, &settings));
+            cases.push(case.about([kind]));
+        }
+        let title = format!("the uniform variates 0 and 1 - 2^-53: {kind}");
+        let case = HardCase::deterministic(14, title, kind, "finite", "finite", move || at_the_ends(index));
+        cases.push(case.about([kind]));
+    }
+    cases
+}

@@ -1,0 +1,149 @@
+//! The table of hard cases: every kind of estimator, free-flight sampler and integrator in every row, or the reason why not.
+//!
+//! A row that has a case of its own for a kind is met by that. All others are made here, from what each kind says of itself.
+
+mod estimators;
+mod flights;
+mod integrators;
+mod profile;
+mod rows;
+mod spared;
+mod spectral;
+
+use super::{HardCase, Outcome};
+use fairflight_laws::{CheckResult, Run};
+use fairflight_sources::derive_seed;
+use rows::{Row, Setting};
+use std::collections::BTreeSet;
+
+pub(super) use profile::Profile;
+pub use spared::{ROWS, SAMPLERS, spared};
+
+/// What came of one subject on one profile.
+struct Found {
+    /// What the law says.
+    result: CheckResult,
+    /// The refusal, if it is one.
+    refused: Option<String>,
+}
+
+/// An estimator or a sampler of free flights, as the rows need it.
+struct Subject {
+    /// Its kind.
+    kind: &'static str,
+    /// Its name among those of its kind.
+    name: &'static str,
+    /// Whether it admits σ_t above the majorant that a profile claims.
+    above: bool,
+    /// Whether it admits σ_t below 0.
+    below: bool,
+    /// Whether it is tried on a profile: what its law or its look-ups cost there may say nothing of how hard it is.
+    is_tried: fn(&Profile) -> bool,
+    /// Its law on a profile.
+    examine: fn(&Profile, Run) -> Found,
+    /// What is refused of its look-ups.
+    watch: fn(&Profile) -> Found,
+}
+
+impl Subject {
+    /// Whether the only right answer is a refusal.
+    fn refuses(&self, setting: &Setting) -> bool {
+        match setting {
+            Setting::Lawful => false,
+            Setting::Above => !self.above,
+            Setting::Below => !self.below,
+            Setting::Broken => true,
+        }
+    }
+}
+
+/// N, seed and level of a run that is to be refused, and judged by nothing.
+const WATCHED: Run = Run { samples: 2_000, seed: 15, alpha: 1e-6 };
+
+/// Look-ups on one profile: an answer is to be right, not precise.
+const BUDGET: f64 = 4e5;
+
+/// As many of `samples` as the budget allows, where one costs so many look-ups; 2 at least.
+fn affordable(samples: u64, cost: f64) -> u64 {
+    samples.min((BUDGET / cost.max(1.0)) as u64).max(2)
+}
+
+/// Whatever draws along a line.
+fn subjects() -> Vec<Subject> {
+    let mut all = estimators::subjects();
+    all.extend(flights::subjects());
+    all.extend(spectral::subjects());
+    all
+}
+
+/// Cases of all kinds and rows that none of `own` is about.
+pub(super) fn cases(own: &[HardCase]) -> Vec<HardCase> {
+    let kinds: BTreeSet<&'static str> = subjects().iter().map(|subject| subject.kind).collect();
+    let mut cases = Vec::new();
+    for row in rows::rows() {
+        for &kind in &kinds {
+            let is_met = own.iter().any(|case| case.number == row.number && case.kinds.contains(&kind));
+            if !is_met && spared(kind, row.number).is_none() {
+                cases.push(case(row.clone(), kind));
+            }
+        }
+    }
+    cases.extend(integrators::cases(own));
+    cases
+}
+
+/// The case of one kind in one row.
+fn case(row: Row, kind: &'static str) -> HardCase {
+    let subjects: Vec<Subject> = subjects().into_iter().filter(|subject| subject.kind == kind).collect();
+    let refuses = |setting| subjects.iter().any(|subject| subject.refuses(setting));
+    let refusal = row.settings.iter().any(|(.., setting)| refuses(setting));
+    // What is refused whatever the seed draws nothing of its own.
+    let is_judged =
+        subjects.iter().any(|subject| row.settings.iter().any(|(.., setting)| !subject.refuses(setting)));
+    let (number, samples, exact) = (row.number, if is_judged { row.samples } else { 0 }, row.exact);
+    let title = format!("{}: {kind}", row.what);
+    let case = HardCase::statistical(number, title, kind, exact, samples, move |run| {
+        put_through(&row, &subjects, run)
+    });
+    HardCase { refusal, ..case }.about([kind])
+}
+
+/// All subjects on all profiles of a row: each right, or refused where it must be.
+fn put_through(row: &Row, subjects: &[Subject], run: Run) -> Outcome {
+    let parts: Vec<(&Subject, &str, &Profile, &Setting)> = subjects
+        .iter()
+        .flat_map(|subject| {
+            let tried = row.settings.iter().filter(|(_, profile, _)| (subject.is_tried)(profile));
+            tried.map(move |(name, profile, setting)| (subject, name.as_str(), profile, setting))
+        })
+        .collect();
+    let share = run.alpha / parts.len() as f64;
+    let (mut judged, mut refusals, mut wrong, mut untestable) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    for (index, (subject, name, profile, setting)) in parts.into_iter().enumerate() {
+        let label = format!("{}, {name}", subject.name);
+        if subject.refuses(setting) {
+            match (subject.watch)(profile).refused {
+                Some(text) if text.contains(" at s = ") => refusals.push(text),
+                other => wrong.push(format!("{label}: {}", other.as_deref().unwrap_or("not noticed"))),
+            }
+            continue;
+        }
+        let seed = derive_seed(run.seed, index as u64);
+        let Found { result, .. } = (subject.examine)(profile, Run { seed, alpha: share, ..run });
+        match result.holds {
+            Some(true) => judged.push((label, result)),
+            Some(false) => wrong.push(format!("{label}: {}", result.reason)),
+            None => untestable += 1,
+        }
+    }
+    let told = [
+        (!judged.is_empty()).then(|| format!("{} right", judged.len())),
+        (untestable > 0).then(|| format!("{untestable} not testable at this N")),
+        refusals.first().map(|first| format!("{} refused: {first}", refusals.len())),
+    ];
+    let passes = wrong.is_empty() && told.iter().any(Option::is_some);
+    let text =
+        if passes { told.into_iter().flatten().collect::<Vec<_>>().join(", ") } else { wrong.join("; ") };
+    let refused = passes && !refusals.is_empty();
+    Outcome { refused, evidence: CheckResult::of_all(judged), ..Outcome::said(passes, text) }
+}
