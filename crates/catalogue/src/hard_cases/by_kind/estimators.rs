@@ -35,6 +35,10 @@ macro_rules! estimator {
                 let $profile = profile;
                 watched(profile, &$make)
             },
+            draw: |profile, source| {
+                let $profile = profile;
+                $make.estimate(profile, source).is_finite()
+            },
         }
     };
 }

@@ -3,6 +3,7 @@
 use super::profile::Profile;
 use super::{Found, Subject};
 use crate::hard_cases::LAWFUL;
+use crate::hard_cases::variates::is_lawful;
 use fairflight_collision::Version;
 use fairflight_freeflight::spectral::DecompositionTracking;
 use fairflight_freeflight::{
@@ -28,6 +29,10 @@ macro_rules! flight {
             watch: |profile| {
                 let $profile = profile;
                 watched(profile, &$make)
+            },
+            draw: |profile, source| {
+                let $profile = profile;
+                is_lawful(profile, $make.sample(profile, source))
             },
         }
     };

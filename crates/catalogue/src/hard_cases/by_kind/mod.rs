@@ -10,9 +10,10 @@ mod rows;
 mod spared;
 mod spectral;
 
+use super::variates::End;
 use super::{HardCase, Outcome};
 use fairflight_laws::{CheckResult, Run};
-use fairflight_sources::derive_seed;
+use fairflight_sources::{LARGEST_VARIATE, derive_seed};
 use rows::{Row, Setting};
 use std::collections::BTreeSet;
 
@@ -43,6 +44,8 @@ struct Subject {
     examine: fn(&Profile, Run) -> Found,
     /// What is refused of its look-ups.
     watch: fn(&Profile) -> Found,
+    /// Whether what it draws is finite and lawful.
+    draw: fn(&Profile, &mut End) -> bool,
 }
 
 impl Subject {
@@ -88,8 +91,32 @@ pub(super) fn cases(own: &[HardCase]) -> Vec<HardCase> {
             }
         }
     }
+    cases.extend(kinds.into_iter().map(at_the_ends));
     cases.extend(integrators::cases(own));
     cases
+}
+
+/// Row 14 of one kind: the variates at either end of the lattice, and then their middle.
+fn at_the_ends(kind: &'static str) -> HardCase {
+    let title = format!("the uniform variates 0 and 1 - 2^-53: {kind}");
+    let evaluate = move || {
+        let profiles = [
+            Profile::constant(0.7, 3.0, (0.0, 1.0)),
+            // Empty at first, and in the middle.
+            Profile::steps(&[0.0, 1.0, 3.0, 4.0, 5.0], &[0.0, 0.5, 0.0, 0.2]),
+        ];
+        for subject in subjects().into_iter().filter(|subject| subject.kind == kind) {
+            for (profile, variate) in
+                profiles.iter().flat_map(|profile| [(profile, 0.0), (profile, LARGEST_VARIATE)])
+            {
+                if !(1..5).all(|left| (subject.draw)(profile, &mut End { variate, left })) {
+                    return Outcome::said(false, format!("{}, variates of {variate}", subject.name));
+                }
+            }
+        }
+        Outcome::said(true, "finite, and a collision only where matter is")
+    };
+    HardCase::deterministic(14, title, kind, "finite", "finite", evaluate).about([kind])
 }
 
 /// The case of one kind in one row.

@@ -5,13 +5,13 @@ use super::{Found, Subject};
 use crate::hard_cases::LAWFUL;
 use fairflight_freeflight::ClosedForm;
 use fairflight_freeflight::spectral::{
-    AverageScheme, HeroWavelength, MaxScheme, SeparateSolve, SharedDistance, SpectralFreeFlight,
-    SpectralTracking,
+    AverageScheme, HeroWavelength, MaxScheme, SeparateSolve, SharedDistance, SpectralFlight,
+    SpectralFreeFlight, SpectralTracking,
 };
 use fairflight_laws::freeflight::{FlightExpectation, Weights};
 use fairflight_laws::spectral::{ObservedSpectrum, check};
 use fairflight_laws::{CheckResult, Run};
-use fairflight_media::{RayQuadrature, Scaled, Tolerance, Wavelength};
+use fairflight_media::{Extinction, RayQuadrature, Scaled, Tolerance, Wavelength};
 use fairflight_sources::derive_seed;
 
 /// Wavelengths.
@@ -32,6 +32,10 @@ macro_rules! wavelengths {
             is_tried: |_| true,
             examine: |$profile, run| law($profile, &$make, $weights, run),
             watch: |$profile| law($profile, &$make, Weights::Any, super::WATCHED),
+            draw: |$profile, source| {
+                let field = Scaled::new($profile.clone(), TINTS).expect(LAWFUL);
+                is_lawful($profile, $make.sample(&field, source))
+            },
         }
     };
 }
@@ -55,6 +59,14 @@ pub(super) fn subjects() -> Vec<Subject> {
             SharedDistance::new(profile.rates(1.0))
         }),
     ]
+}
+
+/// Whether each wavelength has a finite weight, and a collision that counts for one is where matter is.
+fn is_lawful(profile: &Profile, flight: SpectralFlight<N>) -> bool {
+    (0..N).map(|wavelength| flight.of(wavelength)).all(|flight| {
+        let collides = |s: f64| (0.0..=profile.length()).contains(&s) && profile.sigma_t(s) > 0.0;
+        flight.weight().is_finite() && flight.distance().is_none_or(collides)
+    })
 }
 
 /// The law of each wavelength, of at most as many flights as `run` says.
