@@ -87,6 +87,8 @@ pub struct HardCase {
     pub exact: String,
     /// How near is right.
     pub tolerance: &'static str,
+    /// Whether it is made from the table of kinds, and has no set-up of its own.
+    pub of_table: bool,
     /// Whether a refusal is the right answer, in part at least.
     pub refusal: bool,
     /// N of a judged run; 0 for a deterministic evaluation.
@@ -111,6 +113,7 @@ impl HardCase {
             kinds: Vec::new(),
             exact: exact.into(),
             tolerance,
+            of_table: false,
             refusal: false,
             samples: 0,
             function: Box::new(move |_| function()),
@@ -133,6 +136,7 @@ impl HardCase {
             kinds: Vec::new(),
             exact: exact.into(),
             tolerance: "the law, at its share of the false alarm",
+            of_table: false,
             refusal: false,
             samples,
             function: Box::new(function),
@@ -176,7 +180,8 @@ pub fn hard_cases() -> Vec<HardCase> {
     cases.extend(spectral::cases());
     cases.extend(anisotropy::cases());
     cases.extend(connections::cases());
-    cases.extend(by_kind::cases(&cases));
+    let table = by_kind::cases(&cases).into_iter().map(|case| HardCase { of_table: true, ..case });
+    cases.extend(table);
     cases.sort_by_key(|case| case.number);
     cases
 }
