@@ -28,7 +28,10 @@ struct Ball {
     rate: f64,
 }
 
-/// What an integrator sees along a line.
+/// A ball, a line, and the length of the line inside it.
+type Setting = (Ball, Line, f64);
+
+/// Radiance of one estimate along a line.
 type Radiance = fn(&Ball, &Line, &mut dyn UniformSource) -> f64;
 
 /// When one estimate is exact.
@@ -79,43 +82,44 @@ fn lights() -> Lights<f64> {
     Lights { background: Background { constant: 1.0, maps: Vec::new() }, sources: Vec::new() }
 }
 
-fn transmittance(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
-    Attenuation::new(&ball.volume(), &lights(), Regular).radiance(line, source)
+fn transmittance(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
+    Attenuation::new(&ball.volume(), &lights(), Regular).radiance(line, &mut source)
 }
 
-fn particle_tracer(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
-    ParticleTracer::new(&ball.volume(), &lights(), ball.walk()).radiance(line, source)
+fn particle_tracer(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
+    ParticleTracer::new(&ball.volume(), &lights(), ball.walk()).radiance(line, &mut source)
 }
 
-fn line_splitting(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+fn line_splitting(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let splits = LineIntegral::new(4).expect(LAWFUL);
     let (volume, lights) = (ball.volume(), lights());
     LineSplitting::new(&volume, &lights, ball.walk(), (splits, Starts::Equidistant, ball.rate))
-        .radiance(line, source)
+        .radiance(line, &mut source)
 }
 
-fn single_scattering(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+fn single_scattering(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let (volume, lights) = (ball.volume(), lights());
     let sampling = (Sampling::One(Technique::Scattering), 2);
     let explorers = SharedExplorers::new(7, 1).expect(LAWFUL);
     SingleScattering::new(&volume, &lights, sampling, Regular, Regular, explorers)
         .expect(LAWFUL)
-        .radiance(line, source)
+        .radiance(line, &mut source)
 }
 
-fn path_tracer(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+fn path_tracer(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let (volume, lights) = (ball.volume(), lights());
-    let world = World { volume: &volume, surfaces: &NoSurfaces, lights: &lights };
-    PathTracer::new(world, ball.walk(), Ratio(ball.sampling()), Heuristic::Balance).radiance(line, source)
+    let world = World::new(&volume, &NoSurfaces, &lights);
+    PathTracer::new(world, ball.walk(), Ratio(ball.sampling()), Heuristic::Balance)
+        .radiance(line, &mut source)
 }
 
-fn vpl(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+fn vpl(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let (volume, lights) = (ball.volume(), lights());
-    let world = World { volume: &volume, surfaces: &NoSurfaces, lights: &lights };
+    let world = World::new(&volume, &NoSurfaces, &lights);
     let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
     let mut vpls = Vec::new();
     LightPaths::new(world, &emitters, ball.walk())
-        .trace(1.0, &mut Ledger::empty(), source, |vpl| vpls.push(vpl));
+        .trace(1.0, &mut Ledger::empty(), &mut source, |vpl| vpls.push(vpl));
     let gather = Gather {
         world,
         vpls: &vpls,
@@ -127,7 +131,7 @@ fn vpl(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
     let mean = LocalMean::of(&volume.medium, &volume.bounds, [1; 3], 1);
     let correction = Compensation::new(CompensationOptions::EXACT, &mean);
     let pairing = correction.pairing();
-    VplIntegrator::new(gather, (1, pairing), correction).radiance(line, source)
+    VplIntegrator::new(gather, (1, pairing), correction).radiance(line, &mut source)
 }
 
 /// Estimates of one case.
@@ -137,7 +141,7 @@ const ESTIMATES: u64 = 16;
 const GRANTED: f64 = 1e-12;
 
 /// Each estimate is the background through `inside` of the ball, where that is exact; else finite, and not negative.
-fn seen(index: usize, settings: &[(Ball, Line, f64)]) -> Outcome {
+fn seen(index: usize, settings: &[Setting]) -> Outcome {
     let (_, exact, radiance) = INTEGRATORS[index];
     let mut worst = 0.0_f64;
     for &(ball, line, inside) in settings {
@@ -202,7 +206,7 @@ pub(super) fn cases(own: &[HardCase]) -> Vec<HardCase> {
         .flat_map(|g: f64| [g, -g])
         .map(|anisotropy| (Ball { anisotropy, ..haze }, THROUGH, 2.0))
         .collect();
-    let rows: [(u32, &str, Vec<(Ball, Line, f64)>); 5] = [
+    let rows: [(u32, &str, Vec<Setting>); 5] = [
         (1, "nothing in a ball of radius 1e100", nothing),
         (2, "nothing in a ball, rates of optical thickness 88, 745 and 2000", beside),
         (8, "balls of optical thickness 1e-12 to 50", thick),
