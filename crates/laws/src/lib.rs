@@ -3,7 +3,7 @@
 //! [`measure`] draws, [`judge`] compares with what should have come out: sound, unsound, or not testable at this N.
 //!
 //! ```
-//! use fairflight_laws::{Reference, judge, measure};
+//! use fairflight_laws::{Reference, Scores, judge, measure};
 //! use fairflight_media::{Extinction, PiecewiseLinear};
 //! use fairflight_sources::UniformSource;
 //!
@@ -19,13 +19,15 @@
 //!
 //! // σ_t rises to 0.8 and falls again: an optical thickness of 1.2.
 //! let field = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.0, 0.8, 0.0]).unwrap();
-//! let transmittance = Reference::exact((-1.2_f64).exp());
-//! let ours = measure(7, 1_000_000, |source| estimate(&field, 0.75, source)).unwrap();
+//! // What is known of the estimates makes the test a sharp one: at a rate above 0.8 they lie between 0 and 1.
+//! let scores = Scores::Bounded { minimum: 0.0, maximum: 1.0 };
+//! let transmittance = Reference { scores, ..Reference::exact((-1.2_f64).exp()) };
+//! let ours = measure(7, 200_000, |source| estimate(&field, 1.0, source)).unwrap();
 //! assert_eq!(judge(&ours, &transmittance, 1e-6).sound, Some(true));
 //!
 //! // The exponential of one look-up anywhere, times the length: biased by Jensen's inequality, and found out.
 //! let twin = |source: &mut _| (-3.0 * field.sigma_t(3.0 * UniformSource::next_uniform(source))).exp();
-//! let twin = measure(7, 1_000_000, twin).unwrap();
+//! let twin = measure(7, 200_000, twin).unwrap();
 //! assert_eq!(judge(&twin, &transmittance, 1e-6).sound, Some(false));
 //! ```
 //!
@@ -58,7 +60,7 @@ pub mod transmittance;
 
 pub use batch::{BATCH, NotFinite, batch_count, batch_moments, batch_size, draw_batch, measure};
 pub use dense::DenseLattice;
-pub use fairflight_stats::{Reference, Verdict, judge};
+pub use fairflight_stats::{Reference, Scores, Verdict, judge};
 pub use p_value::{Level, PValue};
 pub use result::CheckResult;
 pub use run::Run;
