@@ -2,7 +2,7 @@
 
 use crate::interval_bounds::widened;
 use crate::medium_bounds::Boxes;
-use crate::{BoundCell, BoxBounds, FieldError, Line};
+use crate::{BoundCell, Bounds, BoxBounds, FieldError, Line};
 use glam::DVec3;
 
 /// Minorant and majorant of a medium in equal boxes of a larger one, in the medium's own coordinates (szirmay-kalos-2011; the walk from
@@ -15,42 +15,49 @@ pub struct BoundGrid {
     boxes: Boxes,
     bounds: Vec<(f64, f64)>,
     outside: (f64, f64),
+    lookups: u64,
 }
 
-/// Boxes of a grid at most: 16 GiB.
-const MOST_BOXES: usize = 1 << 30;
+/// Look-ups that building a grid may take: a minute, of a volume of 1290 voxels a side.
+const MOST_LOOKUPS: u64 = 1 << 31;
 
 impl BoundGrid {
     /// The bounds of `medium` in the box between two corners, in `resolution` boxes along each axis. Outside those of the whole medium
     /// are used, infinite where it knows none; see [`with_outside`](Self::with_outside).
     ///
     /// # Errors
-    /// If a corner is not finite, the box is flat, a resolution is 0, or their product beyond 2³⁰.
+    /// If a corner is not finite, the box is flat, a resolution is 0, their product beyond 2³⁰, or it takes more than 2³¹ look-ups.
     pub fn build<M: BoxBounds>(
         medium: &M,
         (min, max): (DVec3, DVec3),
         resolution: [usize; 3],
     ) -> Result<Self, FieldError> {
-        FieldError::check_all_finite("min", &min.to_array())?;
-        FieldError::check_all_finite("max", &max.to_array())?;
-        if !(min.cmplt(max).all() && (max - min).is_finite()) {
-            return Err(FieldError::Degenerate { what: "the box of a grid" });
+        Self::of(medium, Boxes::checked((min, max), resolution)?)
+    }
+
+    /// The bounds of `medium` in boxes around `bounds`: `longest` along the longest edge, along the others as many as make them no longer
+    /// than there. A ray that is clipped to `bounds` does not leave it but by rounding; the bounds of all boxes hold beyond.
+    ///
+    /// # Errors
+    /// If the bounds are a point, `longest` is 0, there are more than 2³⁰ boxes, or it takes more than 2³¹ look-ups.
+    pub fn around<M: BoxBounds>(medium: &M, bounds: &Bounds, longest: usize) -> Result<Self, FieldError> {
+        let grid = Self::of(medium, Boxes::around(medium, bounds, longest)?)?;
+        let (minorant, majorant) = grid.hull();
+        Ok(grid.with_outside(minorant, majorant))
+    }
+
+    fn of<M: BoxBounds>(medium: &M, boxes: Boxes) -> Result<Self, FieldError> {
+        let lookups = medium.lookups_in_all(&boxes);
+        if lookups > MOST_LOOKUPS {
+            let (most, found) = (MOST_LOOKUPS as usize, lookups as usize);
+            return Err(FieldError::TooMany { what: "the values of a grid", most, found });
         }
-        if let Some(&found) = resolution.iter().find(|&&n| n == 0) {
-            return Err(FieldError::TooFew { what: "resolution", least: 1, found });
-        }
-        let count = resolution.iter().try_fold(1_usize, |product, &n| product.checked_mul(n));
-        let found = count.unwrap_or(usize::MAX);
-        if found > MOST_BOXES {
-            return Err(FieldError::TooMany { what: "a grid", most: MOST_BOXES, found });
-        }
-        let boxes = Boxes::new(min, max, resolution);
         let outside = match (medium.lower_bound(), medium.upper_bound()) {
             // Of values that are interpolated, hence off by a rounding where they are all the same.
             (Some(low), Some(high)) => widened(low, high),
             (low, high) => (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)),
         };
-        Ok(Self { bounds: medium.bounds_in_all(&boxes), boxes, outside })
+        Ok(Self { bounds: medium.bounds_in_all(&boxes), boxes, outside, lookups })
     }
 
     /// With other bounds outside of the box: 0 and the background, for voxels of which the box holds all that differ from it.
@@ -63,6 +70,19 @@ impl BoundGrid {
     #[must_use]
     pub fn resolution(&self) -> [usize; 3] {
         self.boxes.resolution()
+    }
+
+    /// The least minorant and the greatest majorant of a box \[1/length\].
+    #[must_use]
+    pub fn hull(&self) -> (f64, f64) {
+        let whole = (f64::INFINITY, f64::NEG_INFINITY);
+        self.bounds.iter().fold(whole, |(low, high), bounds| (low.min(bounds.0), high.max(bounds.1)))
+    }
+
+    /// Values of the medium that were looked up for it; none where its bounds come from a formula.
+    #[must_use]
+    pub fn lookups(&self) -> u64 {
+        self.lookups
     }
 
     /// The memory of the bounds.

@@ -222,6 +222,7 @@ fn what_is_refused() {
     assert!(matches!(build((min, DVec3::NAN), [1, 1, 1]), Err(FieldError::NotFinite { .. })));
     assert!(matches!(build((min, max), [1, 0, 1]), Err(FieldError::TooFew { .. })));
     assert!(matches!(build((min, max), [usize::MAX, 2, 1]), Err(FieldError::TooMany { .. })));
+    assert!(matches!(build((min, 1e6 * max), [1, 1, 1]), Err(FieldError::TooMany { .. })));
     // Outside of the box nothing is known: the cells say so, and a field in such cells is refused.
     struct Unknown;
     impl Medium for Unknown {
@@ -244,4 +245,56 @@ fn what_is_refused() {
     let inside = Line { origin: DVec3::ZERO, direction: DVec3::X };
     assert_eq!(check(&Unknown, &grid, inside, 2.0, &[]), Ok(()));
     assert!(check(&Unknown, &grid, inside, 20.0, &[]).unwrap_err().contains("must be finite"));
+}
+
+/// Voxels far from the origin of the world, small there, and turned: a point is off by more than the roundings of an index.
+#[test]
+fn rays_that_are_clipped_to_the_bounds_of_far_voxels_stay_within_their_cells() {
+    let size = 0.01;
+    let far = dvec3(1000.0, -2000.0, 500.0);
+    let turned = DAffine3::from_rotation_z(0.3) * DAffine3::from_translation(-far);
+    for index_from_world in [
+        DAffine3::from_scale(DVec3::splat(1.0 / size)) * DAffine3::from_translation(-far),
+        DAffine3::from_scale(DVec3::splat(1.0 / size)) * turned,
+    ] {
+        let medium = Voxels::new(Dense::new(), index_from_world, 2.0).unwrap();
+        let extent = size * DVec3::from_array(SIZE.map(|n| n as f64 - 1.0));
+        let bounds = Bounds::aligned_box(far, far + extent).unwrap();
+        let grid = BoundGrid::around(&medium, &bounds, 6).unwrap();
+        assert!(grid.lookups() > 0);
+        for i in 0..60 {
+            let t = f64::from(i);
+            let at = far + extent * (0.5 + 0.5 * dvec3(t.sin(), (1.7 * t).sin(), (0.6 * t).cos()));
+            // In a face of the bounds, along an edge, and anywhere.
+            for (at, direction) in [
+                (dvec3(far.x, at.y, at.z), dvec3(0.0, 0.6, -0.8)),
+                (dvec3(at.x, far.y + extent.y, far.z), DVec3::X),
+                (at, dvec3((0.9 * t).cos(), (1.1 * t).sin(), (2.3 * t).sin()).normalize()),
+            ] {
+                let clip = bounds.clip(at - 3.0 * direction, direction, None).unwrap();
+                let Some(clip) = clip.filter(|clip| clip.length > 0.0) else { continue };
+                assert_eq!(check(&medium, &grid, clip.line, clip.length, &sorted(&[])), Ok(()));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_grid_around_bounds_has_about_cubes_and_its_hull_outside() {
+    let medium = AnalyticCosine::new(1.0).unwrap();
+    let bounds = Bounds::aligned_box(dvec3(-1.0, -2.0, 0.0), dvec3(1.0, 2.0, 10.0)).unwrap();
+    let grid = BoundGrid::around(&medium, &bounds, 20).unwrap();
+    assert_eq!((grid.resolution(), grid.lookups()), ([4, 8, 20], 0));
+    let mut cells = Vec::new();
+    grid.cells_along(&Line { origin: dvec3(50.0, 0.0, 0.0), direction: DVec3::Z }, 3.0, &mut cells);
+    let (minorant, majorant) = grid.hull();
+    assert_eq!(cells, [BoundCell { to: 3.0, minorant, majorant }]);
+    // Edges that differ by roundings have as many boxes.
+    let cube = Bounds::aligned_box(DVec3::splat(0.1), dvec3(0.4, 0.7, 0.4)).unwrap();
+    assert_eq!(BoundGrid::around(&medium, &cube, 8).unwrap().resolution(), [4, 8, 4]);
+    // Flat bounds are a thin box; a point is none.
+    let flat = Bounds::aligned_box(dvec3(-1.0, -2.0, 5.0), dvec3(1.0, 2.0, 5.0)).unwrap();
+    assert_eq!(BoundGrid::around(&medium, &flat, 8).unwrap().resolution(), [4, 8, 1]);
+    let point = Bounds::sphere(DVec3::ZERO, 0.0).unwrap();
+    assert!(matches!(BoundGrid::around(&medium, &point, 8), Err(FieldError::Degenerate { .. })));
 }

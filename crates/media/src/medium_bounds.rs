@@ -1,7 +1,7 @@
 //! Bounds of a medium in boxes: what grids of bounds are built from.
 
 use crate::interval_bounds::{range_of, widened};
-use crate::{AnalyticCosine, EmptySpace, Homogeneous, Lattice, Medium, Voxels};
+use crate::{AnalyticCosine, Bounds, EmptySpace, FieldError, Homogeneous, Lattice, Line, Medium, Voxels};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -36,6 +36,11 @@ pub trait BoxBounds: Medium {
         }
         bounds
     }
+
+    /// Values that [`bounds_in_all`](Self::bounds_in_all) looks up; none where they come from a formula.
+    fn lookups_in_all(&self, _boxes: &Boxes) -> u64 {
+        0
+    }
 }
 
 /// A box cut into equal boxes by planes across its axes, z fastest.
@@ -44,13 +49,69 @@ pub struct Boxes {
     min: DVec3,
     max: DVec3,
     resolution: [usize; 3],
+    slack: f64,
 }
+
+/// Boxes of a grid at most: 16 GiB.
+const MOST_BOXES: usize = 1 << 30;
+/// Roundings by which a point on a line may be off, over its greatest coordinate.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 impl Boxes {
     /// Between two corners, of which the second is greater in each coordinate; `resolution` boxes along each axis.
     pub(crate) fn new(min: DVec3, max: DVec3, resolution: [usize; 3]) -> Self {
         debug_assert!(min.cmplt(max).all() && resolution.iter().all(|&n| n > 0), "no boxes");
-        Self { min, max, resolution }
+        let slack = ROUNDINGS * min.abs().max(max.abs()).max_element();
+        Self { min, max, resolution, slack }
+    }
+
+    /// Around bounds in world space, as the medium sees them: `longest` boxes along the longest edge, along the others as many as make
+    /// them no longer than there. The slack is that of the world's coordinates as well; a flat edge is as thick as the slack.
+    pub(crate) fn around<M: Medium>(medium: &M, bounds: &Bounds, longest: usize) -> Result<Self, FieldError> {
+        let local = |origin, direction| medium.local(Line { origin, direction });
+        let (low, high) = bounds.corners();
+        let corner = |bits: u8| {
+            let is_high = DVec3::from_array([0, 1, 2].map(|axis| f64::from(bits >> axis & 1)));
+            local(low + is_high * (high - low), DVec3::X).origin
+        };
+        let (mut min, mut max) = (0..8)
+            .map(corner)
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), at| (min.min(at), max.max(at)));
+        let stretch: f64 = DVec3::AXES.map(|axis| local(low, axis).direction.length()).iter().sum();
+        let world = low.abs().max(high.abs()).max_element();
+        let slack = ROUNDINGS * (stretch * world).max(min.abs().max(max.abs()).max_element());
+        let flat = max.cmple(min);
+        min = DVec3::select(flat, min - slack, min);
+        max = DVec3::select(flat, max + slack, max);
+        let sides = max - min;
+        // An edge that is longer by roundings needs no box more.
+        let along = |side: f64| {
+            let count = longest as f64 * (side / sides.max_element());
+            ((count * (1.0 - 1e-12)).ceil() as usize).max(1)
+        };
+        let boxes = Self::checked((min, max), sides.to_array().map(along))?;
+        Ok(Self { slack, ..boxes })
+    }
+
+    /// Between two corners.
+    ///
+    /// # Errors
+    /// If a corner is not finite, the box is flat, a resolution is 0, or their product beyond 2³⁰.
+    pub(crate) fn checked((min, max): (DVec3, DVec3), resolution: [usize; 3]) -> Result<Self, FieldError> {
+        FieldError::check_all_finite("min", &min.to_array())?;
+        FieldError::check_all_finite("max", &max.to_array())?;
+        if !(min.cmplt(max).all() && (max - min).is_finite()) {
+            return Err(FieldError::Degenerate { what: "the box of a grid" });
+        }
+        if let Some(&found) = resolution.iter().find(|&&n| n == 0) {
+            return Err(FieldError::TooFew { what: "resolution", least: 1, found });
+        }
+        let count = resolution.iter().try_fold(1_usize, |product, &n| product.checked_mul(n));
+        let found = count.unwrap_or(usize::MAX);
+        if found > MOST_BOXES {
+            return Err(FieldError::TooMany { what: "a grid", most: MOST_BOXES, found });
+        }
+        Ok(Self::new(min, max, resolution))
     }
 
     /// How many boxes there are along each axis.
@@ -70,11 +131,11 @@ impl Boxes {
         self.min[axis] + (self.max[axis] - self.min[axis]) * (i as f64 / n as f64)
     }
 
-    /// How far a point on a line through the whole may be off by rounding: some roundings of the greatest coordinate.
+    /// The distance by which a point on a line through the whole may be off by rounding: some roundings of the greatest coordinate.
     #[inline]
     #[must_use]
     pub fn slack(&self) -> f64 {
-        16.0 * f64::EPSILON * self.min.abs().max(self.max.abs()).max_element()
+        self.slack
     }
 }
 
@@ -177,6 +238,15 @@ impl<L: Lattice> BoxBounds for Voxels<L> {
         }
         ranges
     }
+
+    fn lookups_in_all(&self, boxes: &Boxes) -> u64 {
+        let along = |axis: usize| {
+            let n = boxes.resolution()[axis];
+            boxes.plane(axis, n).ceil() - boxes.plane(axis, 0).floor() + 1.0
+        };
+        // Saturates.
+        (along(0) * along(1) * along(2)) as u64
+    }
 }
 
 /// Integers from `next` to `last` as numbers.
@@ -232,6 +302,9 @@ macro_rules! behind_a_pointer {
             }
             fn bounds_in_all(&self, boxes: &Boxes) -> Vec<(f64, f64)> {
                 (**self).bounds_in_all(boxes)
+            }
+            fn lookups_in_all(&self, boxes: &Boxes) -> u64 {
+                (**self).lookups_in_all(boxes)
             }
         }
     )*};
