@@ -1,7 +1,7 @@
 //! Ratio tracking that adapts its sampling extinction.
 
 use super::erased::ByMajorant;
-use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{NonNegative, Positive};
 use crate::{Failure, kind};
@@ -36,7 +36,7 @@ impl EstimatorKind for AdaptiveRatioSpec {
             .within(range))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         self.estimator(key).map(Shadow::erased)
     }
 

@@ -1,9 +1,10 @@
 //! Ratio tracking, residual ratio tracking, and all beyond.
 
+use super::ray::RayKind;
 use super::tracking::{for_all_rays, of_one_ray, tracking, with_facts};
 use super::{
-    AnyControl, AnySampling, ControlSpec, EstimatorKind, Expected, Prepared, RayEstimator, RayKnown,
-    SamplingSpec, Shadow, Work,
+    AnyControl, AnySampling, ControlSpec, EstimatorKind, Expected, InScene, Prepared, RayKnown, SamplingSpec,
+    Shadow, Work,
 };
 use crate::field::AnyProfile;
 use crate::reader::rule::Own;
@@ -49,10 +50,10 @@ impl EstimatorKind for DoubleParticleSpec {
         Ok(with_facts(prepared, tracking, profile))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         for_all_rays(model(), &self.sigma_samp, &self.control, key)
-            .map(RayEstimator::DoubleParticle)
-            .map(Shadow::Sampled)
+            .map(RayKind::DoubleParticle)
+            .map(Shadow::of)
     }
 
     fn of_one_ray(&self) -> Option<(&'static str, String)> {
@@ -61,6 +62,6 @@ impl EstimatorKind for DoubleParticleSpec {
 
     fn work(&self, ray: RayKnown) -> Work {
         Work::of("estimator.sigma_samp", Expected::Exactly(ray.sampled(&self.sigma_samp)))
-            .after(self.control.explorers())
+            .after_on_each_ray(self.control.explorers())
     }
 }

@@ -12,7 +12,7 @@ use std::fmt::Debug;
 
 /// An estimator with the majorant that is claimed for it.
 #[derive(Clone, Copy, Debug)]
-pub struct ByMajorant<E> {
+pub(super) struct ByMajorant<E> {
     estimator: E,
     /// Over nothing: the field comes with each estimate.
     claim: Bounded<Vacuum>,
@@ -58,16 +58,17 @@ impl<F: Extinction + Copy, E: ClosedForm<Bounded<F>>> ClosedForm<F> for ByMajora
     }
 }
 
-/// An estimator with the cells that are claimed for it.
+/// An estimator with the cells that are claimed for it, of its own or borrowed.
 #[derive(Clone, Debug)]
-pub(super) struct ByCells<E> {
+pub(super) struct ByCells<E, C = Vec<BoundCell>> {
     pub(super) estimator: E,
     /// Over nothing: the field comes with each estimate.
-    pub(super) cells: InCells<Vacuum, Vec<BoundCell>>,
+    pub(super) cells: InCells<Vacuum, C>,
 }
 
-impl<F: Extinction, E: for<'a, 'b> TransmittanceEstimator<InCells<&'a F, &'b [BoundCell]>>>
-    TransmittanceEstimator<F> for ByCells<E>
+impl<F: Extinction, E, C: AsRef<[BoundCell]>> TransmittanceEstimator<F> for ByCells<E, C>
+where
+    E: for<'a, 'b> TransmittanceEstimator<InCells<&'a F, &'b [BoundCell]>>,
 {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
@@ -95,7 +96,7 @@ impl<F: Extinction + Copy, E: for<'b> ClosedForm<InCells<F, &'b [BoundCell]>>> C
 pub(super) type AnyField<'a> = &'a dyn Extinction;
 
 /// An estimator of any type, compiled once: there are more estimators than a scene's shadow rays should be compiled for.
-pub trait Erased: Debug + Send + Sync {
+pub(super) trait Erased: Debug + Send + Sync {
     /// See [`TransmittanceEstimator::estimate`].
     fn estimate(&self, field: AnyField<'_>, source: &mut dyn UniformSource) -> f64;
     /// See [`TransmittanceEstimator::admits`].

@@ -8,6 +8,8 @@ use crate::field::AnyProfile;
 pub struct Work {
     /// Of all that is done once before the first estimate.
     pub preparation: f64,
+    /// The part of it that a scene does anew for each ray.
+    pub on_each_ray: f64,
     /// Of one estimate, on average.
     pub estimate: Expected,
     /// The key of the spec that they come from.
@@ -58,12 +60,17 @@ impl Expected {
 impl Work {
     /// Look-ups of estimates alone, from a key of the spec.
     pub(super) fn of(key: &'static str, estimate: Expected) -> Self {
-        Self { preparation: 0.0, estimate, key }
+        Self { preparation: 0.0, on_each_ray: 0.0, estimate, key }
     }
 
     /// With so many look-ups before the first estimate.
     pub(super) fn after(self, preparation: f64) -> Self {
         Self { preparation, ..self }
+    }
+
+    /// With so many look-ups before the first estimate, of each ray where there are many.
+    pub(super) fn after_on_each_ray(self, lookups: f64) -> Self {
+        Self { preparation: lookups, on_each_ray: lookups, ..self }
     }
 
     /// The work of an estimator on a profile.
@@ -236,7 +243,8 @@ mod tests {
         let nowhere = RayKnown { length: 0.0, ..ray };
         assert_eq!(nowhere.depth(f64::MAX), 0.0);
         assert_eq!(strata(0.0, 1e-300), 1.0);
-        let work = Work { preparation: f64::INFINITY, estimate: Exactly(0.0), key: "estimator" };
+        let work =
+            Work { preparation: f64::INFINITY, on_each_ray: 0.0, estimate: Exactly(0.0), key: "estimator" };
         assert_eq!(work.total(1, 0.0), f64::INFINITY);
     }
 }

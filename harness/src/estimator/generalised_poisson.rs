@@ -1,7 +1,7 @@
 //! The single-term estimator.
 
 use super::p_series::countable;
-use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Number, Positive};
 use crate::{Failure, kind};
@@ -30,7 +30,7 @@ impl EstimatorKind for GeneralisedPoissonSpec {
         Ok(Prepared::new("generalised_poisson", trial, "variance: closed form, integrated over the ray"))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         self.estimator(key).map(Shadow::erased)
     }
 

@@ -1,6 +1,6 @@
 //! Two combs: a biased baseline.
 
-use super::{EstimatorKind, Expected, MOST, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, MOST, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::Whole;
 use crate::{Failure, kind};
@@ -27,7 +27,7 @@ impl EstimatorKind for JackknifeSpec {
         Ok(Prepared::new("jackknife", trial, "variance: quadrature over both offsets (a biased baseline)"))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         self.estimator(key).map(Shadow::erased)
     }
 

@@ -2,7 +2,8 @@
 
 use super::cells::{cells, range};
 use super::erased::{ByCells, ByMajorant};
-use super::{CellsSpec, EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
+use super::in_grid::{self, CellEstimator};
+use super::{CellsSpec, EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::Object;
 use crate::reader::rule::{Maybe, NonNegative, Own, Positive};
@@ -12,20 +13,14 @@ use fairflight_transmittance::{JitteredRatio, JitteredRatioInCells};
 kind! {
     /// Ratio tracking with one candidate per stratum of the majorant's optical thickness; estimates lie in [0, 1].
     JitteredRatioSpec = "jittered_ratio" {
-        /// Bounds of σ_t in cells: a number of them, or edges, minorants and majorants.
+        /// Bounds of σ_t in cells: a number of them, in a scene of boxes along the longest edge of the medium; or edges, minorants and majorants.
         cells: Option<CellsSpec> as Maybe<Own> = None,
-        /// An upper bound of σ_t \[1/length\].
+        /// An upper bound of σ_t \[1/length\]; what the field declares by default.
         majorant: Option<f64> as Maybe<NonNegative> = None,
         /// The optical thickness of a stratum in the majorant.
         epsilon: f64 as Positive,
     }
     check JitteredRatioSpec::check
-}
-
-/// The bounds that are claimed.
-enum Bounds<'a> {
-    Majorant(f64),
-    Cells(&'a CellsSpec),
 }
 
 impl JitteredRatioSpec {
@@ -47,18 +42,7 @@ impl JitteredRatioSpec {
             let majorant = object.required("majorant")?;
             return Err(majorant.reject("cells have majorants of their own: give one of the two"));
         }
-        self.bounds().map(|_| ())
-    }
-
-    fn bounds(&self) -> Result<Bounds<'_>, Failure> {
-        match (&self.cells, self.majorant) {
-            (Some(cells), _) => Ok(Bounds::Cells(cells)),
-            (None, Some(majorant)) => Ok(Bounds::Majorant(majorant)),
-            (None, None) => Err(Failure::refused(
-                "estimator: jittered_ratio needs a majorant; give `majorant`, or `cells`, or use \
-                 unbiased_ray_marching, which needs none",
-            )),
-        }
+        Ok(())
     }
 
     fn below_majorant(&self, majorant: f64, key: &str) -> Result<ByMajorant<JitteredRatio>, Failure> {
@@ -68,56 +52,53 @@ impl JitteredRatioSpec {
         let estimator = JitteredRatio::new(self.epsilon).map_err(|error| refuse(&at("epsilon"), error))?;
         Ok(claim.with(estimator))
     }
+
+    fn between_cells(&self, key: &str) -> Result<JitteredRatioInCells, Failure> {
+        JitteredRatioInCells::new(self.epsilon).map_err(|error| refuse(&format!("{key}.epsilon"), error))
+    }
 }
 
 impl EstimatorKind for JitteredRatioSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
         let variance = "variance: closed form, integrated over the ray";
-        match self.bounds()? {
-            Bounds::Majorant(majorant) => {
-                let trial = profile.erased_trial(self.below_majorant(majorant, "estimator")?);
-                Ok(Prepared::new("jittered_ratio", trial, variance)
-                    .claiming(majorant)
-                    .within(Some((0.0, 1.0))))
-            }
-            Bounds::Cells(spec) => {
-                let estimator = JitteredRatioInCells::new(self.epsilon)
-                    .map_err(|error| refuse("estimator.epsilon", error))?;
-                let cells = cells(spec, profile)?;
-                let range = range(&cells);
-                let trial = profile.erased_trial(ByCells { estimator, cells });
-                Ok(Prepared::new("jittered_ratio", trial, variance).within(Some(range)))
-            }
+        if let Some(spec) = &self.cells {
+            let estimator = self.between_cells("estimator")?;
+            let cells = cells(spec, profile)?;
+            let range = range(&cells);
+            let trial = profile.erased_trial(ByCells { estimator, cells });
+            return Ok(Prepared::new("jittered_ratio", trial, variance).within(Some(range)));
         }
+        let majorant = self.majorant.or_else(|| profile.declared()).ok_or_else(|| {
+            Failure::refused(
+                "estimator: jittered_ratio needs a majorant; give `majorant`, or `cells`, or use \
+                 unbiased_ray_marching, which needs none",
+            )
+        })?;
+        let trial = profile.erased_trial(self.below_majorant(majorant, "estimator")?);
+        Ok(Prepared::new("jittered_ratio", trial, variance).claiming(majorant).within(Some((0.0, 1.0))))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        match self.bounds()? {
-            Bounds::Majorant(majorant) => self.below_majorant(majorant, key).map(Shadow::erased),
-            Bounds::Cells(_) => Err(refuse("cells", "are given along one ray, but a scene has many")),
+    fn for_all_rays(&self, scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        if let Some(cells) = &self.cells {
+            let estimator = CellEstimator::Jittered(self.between_cells(key)?);
+            return in_grid::for_all_rays(estimator, cells, scene, key);
         }
+        let majorant = scene.majorant(self.majorant, &format!("{key}.majorant"))?;
+        self.below_majorant(majorant, key).map(Shadow::erased)
     }
 
     fn of_one_ray(&self) -> Option<(&'static str, String)> {
-        self.cells.as_ref().map(|_| ("kind", CELLS_OF_ONE_RAY.to_owned()))
+        self.cells.as_ref().and_then(in_grid::of_one_ray)
     }
 
     fn work(&self, ray: RayKnown) -> Work {
-        match self.bounds() {
-            Ok(Bounds::Cells(cells)) => {
-                Work::of("estimator.cells", ray.in_cells(cells, |range| strata(range, self.epsilon)))
-            }
-            Ok(Bounds::Majorant(majorant)) => {
-                Work::of("estimator.majorant", Expected::Exactly(strata(ray.depth(majorant), self.epsilon)))
-            }
-            Err(_) => Work::of("estimator.majorant", Expected::Exactly(0.0)),
+        if let Some(cells) = &self.cells {
+            return Work::of("estimator.cells", ray.in_cells(cells, |range| strata(range, self.epsilon)));
         }
+        let depth = self.majorant.map_or_else(|| ray.declared_depth(), |majorant| ray.depth(majorant));
+        Work::of("estimator.majorant", Expected::Exactly(strata(depth, self.epsilon)))
     }
 }
-
-/// The reason why a scene refuses cells along a ray.
-pub(super) const CELLS_OF_ONE_RAY: &str =
-    "cells are given along one ray, but a scene has many: use jittered_ratio with a majorant";
 
 /// Expected look-ups of jittered ratio tracking below a majorant of this optical thickness: (e^h − 1)/h in each
 /// stratum of thickness h ≤ ε.

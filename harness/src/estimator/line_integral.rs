@@ -2,7 +2,8 @@
 
 use super::erased::ByMajorant;
 use super::range::below_zero;
-use super::{EstimatorKind, Expected, MOST_POINTS, Prepared, RayEstimator, RayKnown, Shadow, Work, refuse};
+use super::ray::RayKind;
+use super::{EstimatorKind, Expected, InScene, MOST_POINTS, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{NonNegative, Whole};
 use crate::{Failure, kind};
@@ -37,8 +38,8 @@ impl EstimatorKind for LineIntegralSpec {
             .claiming(self.majorant))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        self.estimator(key).map(RayEstimator::LineIntegral).map(Shadow::Sampled)
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        self.estimator(key).map(RayKind::LineIntegral).map(Shadow::of)
     }
 
     fn work(&self, ray: RayKnown) -> Work {

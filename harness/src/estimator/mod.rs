@@ -8,6 +8,8 @@ mod erased;
 mod expected;
 mod generalised_poisson;
 mod hybrid;
+mod in_grid;
+mod in_scene;
 mod jackknife;
 mod jittered_ratio;
 mod line_integral;
@@ -38,6 +40,7 @@ pub use double_particle::DoubleParticleSpec;
 pub use expected::{Expected, RayKnown, Work};
 pub use generalised_poisson::GeneralisedPoissonSpec;
 pub use hybrid::HybridSpec;
+pub use in_scene::{InScene, Preparation};
 pub use jackknife::JackknifeSpec;
 pub use jittered_ratio::JitteredRatioSpec;
 pub use line_integral::LineIntegralSpec;
@@ -99,8 +102,8 @@ pub trait EstimatorKind {
     /// The estimator of all rays of a scene; `key` leads to the spec.
     ///
     /// # Errors
-    /// If a parameter is not lawful, or belongs to one ray.
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure>;
+    /// If a parameter is not lawful, or belongs to one ray, or the scene's medium lacks what the estimator needs to know.
+    fn for_all_rays(&self, scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure>;
 
     /// The key that a scene cannot take, and why: what belongs to one ray.
     fn of_one_ray(&self) -> Option<(&'static str, String)> {

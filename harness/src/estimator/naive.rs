@@ -1,6 +1,6 @@
 //! The exponential of one comb: a biased baseline.
 
-use super::{EstimatorKind, Expected, MOST, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, MOST, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::Whole;
 use crate::{Failure, kind};
@@ -26,7 +26,7 @@ impl EstimatorKind for NaiveSpec {
         Ok(Prepared::new("naive", trial, "variance: quadrature over the offset (a biased baseline)"))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         self.estimator(key).map(Shadow::erased)
     }
 

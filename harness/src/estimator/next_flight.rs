@@ -1,7 +1,7 @@
 //! Next-flight estimators, and their combination with ratio tracking.
 
 use super::erased::ByMajorant;
-use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::NonNegative;
 use crate::{Failure, kind, words};
@@ -82,7 +82,7 @@ impl EstimatorKind for NextFlightSpec {
         Ok(Prepared::new("next_flight", trial, variance).claiming(self.majorant).within(range))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         let claim = self.claim(key)?;
         Ok(of_version!(self.version, estimator => Shadow::erased(claim.with(estimator))))
     }

@@ -1,10 +1,12 @@
 //! Power series in the optical thickness.
 
-use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Maybe, NonNegative};
 use crate::{Failure, kind, words};
-use fairflight_transmittance::{PSeries, PSeriesVersion};
+use fairflight_media::Extinction;
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{PSeries, PSeriesVersion, TransmittanceEstimator};
 
 words! {
     /// The law of the orders of a power series.
@@ -44,6 +46,29 @@ impl PSeriesSpec {
     }
 }
 
+/// The series about the optical thickness of the majorant on each ray.
+#[derive(Clone, Copy, Debug)]
+struct AboutMajorant {
+    version: PSeriesVersion,
+    majorant: f64,
+}
+
+impl<F: Extinction> TransmittanceEstimator<F> for AboutMajorant {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+        // Nothing is there to be looked up, and a pivot of 0 would admit nothing.
+        if field.length() == 0.0 {
+            return 1.0;
+        }
+        PSeries::new(self.version, self.majorant * field.length())
+            .expect("a majorant is at least 0, and a ray has a length")
+            .estimate(field, source)
+    }
+
+    fn admits(&self, _field: &F, _s: f64, sigma_t: f64) -> bool {
+        self.version == PSeriesVersion::Cumulative || self.majorant > 0.0 || sigma_t == 0.0
+    }
+}
+
 impl EstimatorKind for PSeriesSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
         let variance = match self.version {
@@ -62,14 +87,14 @@ impl EstimatorKind for PSeriesSpec {
         Ok(Prepared::new("p_series", trial, variance).within(range))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        let pivot = self.pivot.ok_or_else(|| refuse(&format!("{key}.pivot"), "this key is missing"))?;
-        self.about(pivot, key).map(Shadow::erased)
-    }
-
-    fn of_one_ray(&self) -> Option<(&'static str, String)> {
-        let reason = "p_series takes its pivot from one ray, but a scene has many: give `pivot`";
-        self.pivot.is_none().then(|| ("kind", reason.to_owned()))
+    fn for_all_rays(&self, scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        if let Some(pivot) = self.pivot {
+            return self.about(pivot, key).map(Shadow::erased);
+        }
+        let majorant = scene.majorant(None, &format!("{key}.pivot"))?;
+        // The pivot of no ray is greater.
+        self.about(majorant * scene.longest(), key)?;
+        Ok(Shadow::erased(AboutMajorant { version: self.version, majorant }))
     }
 
     fn work(&self, ray: RayKnown) -> Work {

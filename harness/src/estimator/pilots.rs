@@ -1,7 +1,7 @@
 //! What is learned on a profile before the first estimate, where there are no earlier rays: from streams that no estimate draws from.
 
 use crate::field::AnyProfile;
-use fairflight_media::Bounded;
+use fairflight_media::{Bounded, Counted};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_transmittance::{Experience, Pilot, RunningCumulant, UnbiasedRayMarching};
 
@@ -9,14 +9,19 @@ use fairflight_transmittance::{Experience, Pilot, RunningCumulant, UnbiasedRayMa
 pub(super) const TUNING: u32 = 32;
 const TUNING_SEED: u64 = 0x7475_6E65;
 
-/// The variance of a comb in one segment, by an estimator whose roulette never stops at once: each draw makes several combs.
-pub(super) fn comb_variance(profile: &AnyProfile, estimator: UnbiasedRayMarching) -> f64 {
-    let mut earlier = RunningCumulant::new();
+/// The variance of a comb in one segment, and the look-ups that it took: by a draw of each of these estimators, whose roulette never stops
+/// at once, so that each draw makes several combs.
+pub(super) fn comb_variance<'a>(
+    draws: impl Iterator<Item = (&'a AnyProfile, UnbiasedRayMarching)>,
+) -> (f64, u64) {
+    let (mut earlier, mut lookups) = (RunningCumulant::new(), 0);
     let mut source = Seeded::new(TUNING_SEED);
-    for _ in 0..TUNING {
-        estimator.estimate_and_observe(&profile.field(), &mut source, &mut earlier);
+    for (profile, estimator) in draws {
+        let counted = Counted::new(profile.field());
+        estimator.estimate_and_observe(&counted, &mut source, &mut earlier);
+        lookups += counted.lookups();
     }
-    earlier.value().unwrap_or(0.0)
+    (earlier.value().unwrap_or(0.0), lookups)
 }
 
 /// Pilots of the same profile that teach a hybrid: their variates are those of no estimate.
@@ -32,11 +37,15 @@ pub fn pilot(profile: &AnyProfile, majorant: f64, seed: u64) -> Pilot {
     }
 }
 
-/// What pilots of the profile tell.
-pub(super) fn experience(profile: &AnyProfile, majorant: f64) -> Experience {
-    let mut experience = Experience::default();
-    (0..PILOTS).for_each(|k| {
-        experience.observe(&pilot(profile, majorant, derive_seed(PILOT_SEED, u64::from(k))));
-    });
-    experience
+/// What a pilot of each of these profiles tells, and the look-ups of all.
+pub(super) fn experience<'a>(
+    profiles: impl Iterator<Item = &'a AnyProfile>,
+    majorant: f64,
+) -> (Experience, u64) {
+    let (mut experience, mut lookups) = (Experience::default(), 0);
+    for (k, profile) in (0..).zip(profiles) {
+        experience.observe(&pilot(profile, majorant, derive_seed(PILOT_SEED, k)));
+        lookups += Pilot::lookups(majorant * profile.length());
+    }
+    (experience, lookups)
 }

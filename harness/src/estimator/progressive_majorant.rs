@@ -1,6 +1,6 @@
 //! Ratio tracking that learns its majorant from estimate to estimate.
 
-use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::Positive;
 use crate::{Failure, kind};
@@ -47,7 +47,7 @@ impl EstimatorKind for ProgressiveMajorantSpec {
         Ok(Prepared { is_sequential: true, ..prepared.within(profile.field().knowledge().of_clamped_walk()) })
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         Err(refuse(&format!("{key}.kind"), "progressive_majorant learns along one ray, but a scene has many"))
     }
 

@@ -1,10 +1,11 @@
 //! An estimator of transmittance of any kind, prepared anew for each ray of a scene.
 
-use super::AnyControl;
 use super::control::{ConstantControlSpec, ControlSpec, ExplorersSpec};
 use super::erased::{AnyField, ByMajorant, Erased};
+use super::in_grid::InGrid;
+use super::{AnyControl, Preparation};
 use fairflight_collision::{CollisionModel, DoubleParticle, SingleParticle};
-use fairflight_media::{Constant, Domain, Extinction, Medium, Ray, Vacuum, Violation, Watched};
+use fairflight_media::{BoundCell, Constant, Domain, Extinction, Medium, Ray, Vacuum, Violation, Watched};
 use fairflight_paths::RayTransmittance;
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{
@@ -22,9 +23,16 @@ pub struct Unlawful {
     pub sigma_t: f64,
 }
 
-/// The part of an estimator that is the same for all rays.
+/// The part of an estimator that is the same for all rays, and what it cost to make it.
 #[derive(Debug)]
-pub enum RayEstimator {
+pub struct RayEstimator {
+    kind: RayKind,
+    preparation: Option<Preparation>,
+}
+
+/// An estimator of any ray.
+#[derive(Debug)]
+pub(super) enum RayKind {
     /// Track length.
     Woodcock(ByMajorant<Woodcock>),
     /// Both particles leave a collision.
@@ -35,13 +43,15 @@ pub enum RayEstimator {
     LineIntegral(ByMajorant<LineIntegral>),
     /// The biased baseline.
     RayMarching(RayMarching),
+    /// Bounds in cells, from a grid.
+    InGrid(InGrid),
     /// Any other, compiled once.
     Erased(Box<dyn Erased>),
 }
 
 /// Tracking without its profile.
 #[derive(Clone, Debug)]
-pub struct RayTracking<M> {
+pub(super) struct RayTracking<M> {
     model: M,
     control: RayControl,
     sigma_samp: f64,
@@ -74,12 +84,26 @@ impl<M> RayTracking<M> {
 }
 
 impl RayEstimator {
+    pub(super) fn new(kind: RayKind) -> Self {
+        Self { kind, preparation: None }
+    }
+
+    pub(super) fn after(self, preparation: Preparation) -> Self {
+        Self { preparation: Some(preparation), ..self }
+    }
+
+    /// The look-ups that were made to prepare it for the scene.
+    #[must_use]
+    pub fn preparation(&self) -> Option<&Preparation> {
+        self.preparation.as_ref()
+    }
+
     /// The majorant below which it draws collisions by their probability.
     #[must_use]
     pub fn collision_majorant(&self) -> Option<f64> {
-        match self {
-            Self::Woodcock(estimator) => Some(estimator.majorant()),
-            Self::LineIntegral(estimator) => Some(estimator.majorant()),
+        match &self.kind {
+            RayKind::Woodcock(estimator) => Some(estimator.majorant()),
+            RayKind::LineIntegral(estimator) => Some(estimator.majorant()),
             _ => None,
         }
     }
@@ -87,26 +111,27 @@ impl RayEstimator {
     /// One worker's estimator; the first look-up that it is not defined for is left in `unlawful`.
     #[must_use]
     pub fn worker<'a>(&'a self, unlawful: &'a Cell<Option<Unlawful>>) -> RayWorker<'a> {
-        let kind = match self {
-            Self::DoubleParticle(tracking) => Some(tracking.control),
-            Self::SingleParticle(tracking) => Some(tracking.control),
+        let control = match &self.kind {
+            RayKind::DoubleParticle(tracking) => Some(tracking.control),
+            RayKind::SingleParticle(tracking) => Some(tracking.control),
             _ => None,
         };
-        let control = match kind {
+        let control = match control {
             Some(RayControl::Explorers(count)) => AnyControl::Explorers(
                 Explorers::through(&Vacuum::new(0.0), count).expect("the spec has at least 2 explorers"),
             ),
             _ => AnyControl::None(Vacuum::new(0.0)),
         };
-        RayWorker { estimator: self, control, unlawful }
+        RayWorker { estimator: &self.kind, control, cells: Vec::new(), unlawful }
     }
 }
 
-/// An estimator with the control of the ray at hand.
+/// An estimator with the control and the cells of the ray at hand.
 #[derive(Debug)]
 pub struct RayWorker<'a> {
-    estimator: &'a RayEstimator,
+    estimator: &'a RayKind,
     control: AnyControl,
+    cells: Vec<BoundCell>,
     unlawful: &'a Cell<Option<Unlawful>>,
 }
 
@@ -115,14 +140,15 @@ impl<M: Medium> RayTransmittance<M> for RayWorker<'_> {
     // integrators cost minutes of compilation.
     #[inline(never)]
     fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64 {
-        let Self { estimator, control, unlawful } = self;
+        let Self { estimator, control, cells, unlawful } = self;
         match estimator {
-            RayEstimator::Woodcock(estimator) => watched(ray, estimator, unlawful, source),
-            RayEstimator::DoubleParticle(tracking) => tracking.estimate(ray, control, unlawful, source),
-            RayEstimator::SingleParticle(tracking) => tracking.estimate(ray, control, unlawful, source),
-            RayEstimator::LineIntegral(estimator) => watched(ray, estimator, unlawful, source),
-            RayEstimator::RayMarching(estimator) => watched(ray, estimator, unlawful, source),
-            RayEstimator::Erased(estimator) => watched(ray, &Behind(&**estimator), unlawful, source),
+            RayKind::Woodcock(estimator) => watched(ray, estimator, unlawful, source),
+            RayKind::DoubleParticle(tracking) => tracking.estimate(ray, control, unlawful, source),
+            RayKind::SingleParticle(tracking) => tracking.estimate(ray, control, unlawful, source),
+            RayKind::LineIntegral(estimator) => watched(ray, estimator, unlawful, source),
+            RayKind::RayMarching(estimator) => watched(ray, estimator, unlawful, source),
+            RayKind::InGrid(estimator) => estimator.estimate(ray, cells, unlawful, source),
+            RayKind::Erased(estimator) => watched(ray, &Behind(&**estimator), unlawful, source),
         }
     }
 }
@@ -165,7 +191,7 @@ impl<K: CollisionModel + Copy> RayTracking<K> {
 
 /// One estimate on a ray.
 #[inline]
-fn watched<M: Medium, E>(
+pub(super) fn watched<M: Medium, E>(
     ray: &Ray<&M>,
     estimator: &E,
     unlawful: &Cell<Option<Unlawful>>,
@@ -185,7 +211,7 @@ where
     estimate
 }
 
-struct Admitted<'a, F, E> {
+pub(super) struct Admitted<'a, F, E> {
     field: F,
     estimator: &'a E,
 }

@@ -1,6 +1,7 @@
 //! Ray marching: a biased baseline.
 
-use super::{EstimatorKind, Expected, MOST_POINTS, Prepared, RayEstimator, RayKnown, Shadow, Work, refuse};
+use super::ray::RayKind;
+use super::{EstimatorKind, Expected, InScene, MOST_POINTS, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Flag, Whole};
 use crate::{Failure, kind};
@@ -46,8 +47,8 @@ impl EstimatorKind for RayMarchingSpec {
             }))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        self.estimator(key).map(RayEstimator::RayMarching).map(Shadow::Sampled)
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        self.estimator(key).map(RayKind::RayMarching).map(Shadow::of)
     }
 
     fn work(&self, _ray: RayKnown) -> Work {

@@ -1,6 +1,6 @@
 //! The closed form of a profile, as an estimator.
 
-use super::{EstimatorKind, Expected, Prepared, RayKnown, Shadow, Work};
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work};
 use crate::field::AnyProfile;
 use crate::{Failure, kind};
 use fairflight_media::{Extinction, RayQuadrature, Tolerance};
@@ -45,7 +45,7 @@ impl EstimatorKind for RegularSpec {
         Ok(Prepared::new("regular", trial, "variance: none").within(Some((0.0, f64::INFINITY))))
     }
 
-    fn for_all_rays(&self, _key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, _key: &str) -> Result<Shadow, Failure> {
         Ok(Shadow::Regular)
     }
 

@@ -2,8 +2,8 @@
 
 use super::cells::{cells, range};
 use super::erased::ByCells;
-use super::jittered_ratio::CELLS_OF_ONE_RAY;
-use super::{CellsSpec, EstimatorKind, Prepared, RayKnown, Shadow, Work, refuse};
+use super::in_grid::{self, CellEstimator};
+use super::{CellsSpec, EstimatorKind, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Own, Positive};
 use crate::{Failure, kind};
@@ -12,16 +12,22 @@ use fairflight_transmittance::ResidualCells;
 kind! {
     /// Residual ratio tracking between bounds in cells.
     ResidualCellsSpec = "residual_cells" {
-        /// Bounds of σ_t in cells: a number of them, or edges, minorants and majorants.
+        /// Bounds of σ_t in cells: a number of them, in a scene of boxes along the longest edge of the medium; or edges, minorants and majorants.
         cells: CellsSpec as Own,
         /// The sampling extinction over the difference of the bounds.
         rate: f64 as Positive = 1.0,
     }
 }
 
+impl ResidualCellsSpec {
+    fn estimator(&self, key: &str) -> Result<ResidualCells, Failure> {
+        ResidualCells::new(self.rate).map_err(|error| refuse(&format!("{key}.rate"), error))
+    }
+}
+
 impl EstimatorKind for ResidualCellsSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let estimator = ResidualCells::new(self.rate).map_err(|error| refuse("estimator.rate", error))?;
+        let estimator = self.estimator("estimator")?;
         let cells = cells(&self.cells, profile)?;
         let range = (self.rate >= 1.0).then(|| range(&cells));
         let trial = profile.erased_trial(ByCells { estimator, cells });
@@ -29,12 +35,13 @@ impl EstimatorKind for ResidualCellsSpec {
             .within(range))
     }
 
-    fn for_all_rays(&self, _key: &str) -> Result<Shadow, Failure> {
-        Err(refuse("cells", "are given along one ray, but a scene has many"))
+    fn for_all_rays(&self, scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        let estimator = CellEstimator::Residual(self.estimator(key)?);
+        in_grid::for_all_rays(estimator, &self.cells, scene, key)
     }
 
     fn of_one_ray(&self) -> Option<(&'static str, String)> {
-        Some(("kind", CELLS_OF_ONE_RAY.to_owned()))
+        in_grid::of_one_ray(&self.cells)
     }
 
     fn work(&self, ray: RayKnown) -> Work {

@@ -1,7 +1,10 @@
 //! Transmittance of rays, shadow rays and connections of a scene, by an estimator of any kind or in closed form.
 
 use super::erased::Erased;
-use super::{ControlSpec, DoubleParticleSpec, EstimatorKind, RayEstimator, RayWorker, Unlawful};
+use super::ray::RayKind;
+use super::{
+    ControlSpec, DoubleParticleSpec, EstimatorKind, InScene, Preparation, RayEstimator, RayWorker, Unlawful,
+};
 use crate::Failure;
 use crate::field::AnyMedium;
 use fairflight_media::{LineThickness, Ray};
@@ -20,9 +23,30 @@ pub enum Shadow {
 }
 
 impl Shadow {
+    pub(super) fn of(kind: RayKind) -> Self {
+        Self::Sampled(RayEstimator::new(kind))
+    }
+
     /// An estimator that is compiled once, for a field behind a pointer.
     pub(super) fn erased(estimator: impl Erased + 'static) -> Self {
-        Self::Sampled(RayEstimator::Erased(Box::new(estimator)))
+        Self::of(RayKind::Erased(Box::new(estimator)))
+    }
+
+    /// With what was looked up for it.
+    pub(super) fn after(self, preparation: Preparation) -> Self {
+        match self {
+            Self::Regular => self,
+            Self::Sampled(estimator) => Self::Sampled(estimator.after(preparation)),
+        }
+    }
+
+    /// The look-ups that were made to prepare it for the scene.
+    #[must_use]
+    pub fn preparation(&self) -> Option<&Preparation> {
+        match self {
+            Self::Regular => None,
+            Self::Sampled(estimator) => estimator.preparation(),
+        }
     }
 
     /// The one of a spec that names none: in closed form where that costs no look-up, else ratio tracking at the greatest
@@ -30,11 +54,12 @@ impl Shadow {
     ///
     /// # Errors
     /// If the medium declares none.
-    pub fn default_for(medium: &AnyMedium, key: &str) -> Result<Self, Failure> {
-        if matches!(medium, AnyMedium::Empty | AnyMedium::Homogeneous(_)) {
+    pub fn default_for(scene: &InScene<'_>, key: &str) -> Result<Self, Failure> {
+        if matches!(scene.medium, AnyMedium::Empty | AnyMedium::Homogeneous(_)) {
             return Ok(Self::Regular);
         }
-        DoubleParticleSpec::at(medium.greatest_extinction(key)?, ControlSpec::none()).for_all_rays(key)
+        let greatest = scene.medium.greatest_extinction(key)?;
+        DoubleParticleSpec::at(greatest, ControlSpec::none()).for_all_rays(scene, key)
     }
 
     /// True for the closed form.

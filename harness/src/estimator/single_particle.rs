@@ -1,9 +1,8 @@
 //! Tracking that keeps at most one particle per collision.
 
+use super::ray::RayKind;
 use super::tracking::{for_all_rays, of_one_ray, tracking, with_facts};
-use super::{
-    ControlSpec, EstimatorKind, Expected, Prepared, RayEstimator, RayKnown, SamplingSpec, Shadow, Work,
-};
+use super::{ControlSpec, EstimatorKind, Expected, InScene, Prepared, RayKnown, SamplingSpec, Shadow, Work};
 use crate::field::AnyProfile;
 use crate::reader::Node;
 use crate::reader::rule::{Own, Rule};
@@ -64,10 +63,10 @@ impl EstimatorKind for SingleParticleSpec {
         Ok(with_facts(prepared, tracking, profile))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         for_all_rays(self.model(), &self.sigma_samp, &self.control, key)
-            .map(RayEstimator::SingleParticle)
-            .map(Shadow::Sampled)
+            .map(RayKind::SingleParticle)
+            .map(Shadow::of)
     }
 
     fn of_one_ray(&self) -> Option<(&'static str, String)> {
@@ -76,6 +75,6 @@ impl EstimatorKind for SingleParticleSpec {
 
     fn work(&self, ray: RayKnown) -> Work {
         Work::of("estimator.sigma_samp", Expected::Between(0.0, ray.sampled(&self.sigma_samp)))
-            .after(self.control.explorers())
+            .after_on_each_ray(self.control.explorers())
     }
 }

@@ -1,6 +1,6 @@
 //! Debiasing by telescoping levels.
 
-use super::{EstimatorKind, Expected, MOST, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, MOST, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Flag, Number, Whole};
 use crate::{Failure, kind};
@@ -35,7 +35,7 @@ impl EstimatorKind for TelescopingSpec {
         Ok(Prepared::new("telescoping", trial, variance).within(range))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
         self.estimator(key).map(Shadow::erased)
     }
 

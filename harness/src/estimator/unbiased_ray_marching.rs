@@ -1,13 +1,18 @@
 //! Unbiased ray marching, and what comes after it.
 
 use super::pilots::{TUNING, comb_variance};
-use super::{EstimatorKind, Expected, MOST, Prepared, RayKnown, Shadow, Work, refuse};
+use super::{EstimatorKind, Expected, InScene, MOST, Preparation, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::{Flag, Maybe, NonNegative, Own, Ruled, Whole};
 use crate::reader::{Node, Object};
 use crate::{Failure, kind, words};
-use fairflight_transmittance::{Comb, CombShape, Roulette, UnbiasedRayMarching, teeth_for};
+use fairflight_media::Extinction;
+use fairflight_sources::UniformSource;
+use fairflight_transmittance::{
+    Comb, CombShape, Roulette, TransmittanceEstimator, UnbiasedRayMarching, teeth_for,
+};
 use serde_json::{Value, json};
+use std::iter::repeat_n;
 
 /// A family of combs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,6 +161,49 @@ impl UnbiasedRayMarchingSpec {
     }
 }
 
+/// The teeth of a ray.
+#[derive(Clone, Copy, Debug)]
+enum Teeth {
+    Always(u32),
+    /// By the rule, from the optical thickness of this majorant \[1/length\].
+    OfMajorant(f64),
+}
+
+impl Teeth {
+    fn on(self, length: f64) -> u32 {
+        match self {
+            Self::Always(teeth) => teeth,
+            Self::OfMajorant(majorant) => teeth_for(majorant * length),
+        }
+    }
+}
+
+/// The estimator of any ray of a scene: as this one, with teeth of its own.
+#[derive(Clone, Copy, Debug)]
+struct OnAnyRay {
+    rule: Teeth,
+    estimator: UnbiasedRayMarching,
+}
+
+impl OnAnyRay {
+    fn on(&self, length: f64) -> UnbiasedRayMarching {
+        let comb = Comb::new(self.rule.on(length), self.estimator.comb().shape());
+        let comb = comb.expect("a ray has a tooth at least");
+        UnbiasedRayMarching::new(comb, self.estimator.roulette())
+            .in_segments(self.estimator.segments())
+            .expect("the number of segments is that of an estimator")
+    }
+}
+
+impl<F: Extinction> TransmittanceEstimator<F> for OnAnyRay {
+    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+        self.on(field.length()).estimate(field, source)
+    }
+    fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
+        self.estimator.admits(field, s, sigma_t)
+    }
+}
+
 impl EstimatorKind for UnbiasedRayMarchingSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
         let key = "estimator";
@@ -169,7 +217,8 @@ impl EstimatorKind for UnbiasedRayMarchingSpec {
         let roulette = match self.roulette {
             RouletteSpec::Stop(stop) => Self::stopping(stop, key)?,
             RouletteSpec::SelfTuned => {
-                let k2 = comb_variance(profile, self.with(teeth, Self::stopping(0.0, key)?, key)?);
+                let estimator = self.with(teeth, Self::stopping(0.0, key)?, key)?;
+                let (k2, _) = comb_variance(repeat_n((profile, estimator), TUNING as usize));
                 let roulette = Roulette::tuned(k2);
                 variance.push_str(&format!(
                     "; roulette: P = {:.4} from k2 = {k2:.3e} per segment, found by {TUNING} earlier draws whose look-ups are not charged",
@@ -183,22 +232,32 @@ impl EstimatorKind for UnbiasedRayMarchingSpec {
         Ok(Prepared { closed_form_is_costly: self.segments > FEW_SEGMENTS, ..prepared })
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        let (None, RouletteSpec::Stop(stop)) = (self.of_one_ray(), self.roulette) else {
-            return Err(refuse(&format!("{key}.kind"), "depends on the ray"));
+    fn for_all_rays(&self, scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        let rule = match (self.teeth, self.pivot) {
+            (None, None) => Teeth::OfMajorant(scene.majorant(None, &format!("{key}.teeth"))?),
+            _ => Teeth::Always(self.teeth(f64::NAN)),
         };
-        self.with(self.teeth(f64::NAN), Self::stopping(stop, key)?, key).map(Shadow::erased)
-    }
-
-    fn of_one_ray(&self) -> Option<(&'static str, String)> {
-        let reason = if self.teeth.is_none() {
-            "the rule takes the teeth of unbiased_ray_marching from one ray, but a scene has many: give `teeth`"
-        } else if self.roulette == RouletteSpec::SelfTuned {
-            "self_tuned is fitted to one ray, but a scene has many: give a stop probability"
-        } else {
-            return None;
+        let with = |roulette: Roulette| {
+            // What is wrong is so on every ray.
+            let estimator = self.with(rule.on(scene.longest()), roulette, key)?;
+            Ok(OnAnyRay { rule, estimator })
         };
-        Some(("kind", reason.to_owned()))
+        let RouletteSpec::Stop(stop) = self.roulette else {
+            let never_at_once: OnAnyRay = with(Self::stopping(0.0, key)?)?;
+            let profiles = scene.profiles();
+            let on = |profile: &AnyProfile| never_at_once.on(profile.length());
+            scene.affords(profiles.iter().map(|profile| on(profile).expected_lookups()), key)?;
+            let draws = profiles.iter().cycle().take(TUNING as usize);
+            let (k2, lookups) = comb_variance(draws.map(|profile| (profile, on(profile))));
+            let roulette = Roulette::tuned(k2);
+            let purpose = format!(
+                "the roulette, P = {:.4}, from {TUNING} draws on {} rays of the scene",
+                roulette.going_on(),
+                profiles.len()
+            );
+            return Ok(Shadow::erased(with(roulette)?).after(Preparation { lookups, purpose }));
+        };
+        with(Self::stopping(stop, key)?).map(Shadow::erased)
     }
 
     fn work(&self, ray: RayKnown) -> Work {

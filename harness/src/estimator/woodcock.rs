@@ -2,7 +2,8 @@
 
 use super::erased::ByMajorant;
 use super::range::below_zero;
-use super::{EstimatorKind, Expected, Prepared, RayEstimator, RayKnown, Shadow, Work, refuse};
+use super::ray::RayKind;
+use super::{EstimatorKind, Expected, InScene, Prepared, RayKnown, Shadow, Work, refuse};
 use crate::field::AnyProfile;
 use crate::reader::rule::NonNegative;
 use crate::{Failure, kind};
@@ -32,8 +33,8 @@ impl EstimatorKind for WoodcockSpec {
             .claiming(self.majorant))
     }
 
-    fn for_all_rays(&self, key: &str) -> Result<Shadow, Failure> {
-        self.estimator(key).map(RayEstimator::Woodcock).map(Shadow::Sampled)
+    fn for_all_rays(&self, _scene: &InScene<'_>, key: &str) -> Result<Shadow, Failure> {
+        self.estimator(key).map(RayKind::Woodcock).map(Shadow::of)
     }
 
     fn work(&self, ray: RayKnown) -> Work {

@@ -1,8 +1,8 @@
 //! Volumes that were read so far, shared by all rays.
 
-use super::VoxelLattice;
+use super::{MediumSpec, VoxelLattice};
 use crate::Failure;
-use fairflight_media::{Bounds, Voxels};
+use fairflight_media::{BoundGrid, Bounds, Voxels};
 use fairflight_volumes::{Affine, VoxelGrid, read_float_grid};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
@@ -13,6 +13,8 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug, Default)]
 pub struct MediumLibrary {
     volumes: Mutex<HashMap<VolumeKey, Volume>>,
+    /// Of each medium, by the number of boxes along its longest edge.
+    grids: Mutex<Vec<(MediumSpec, u32, Arc<BoundGrid>)>>,
 }
 
 type VolumeKey = (PathBuf, Option<String>, u64);
@@ -47,6 +49,24 @@ impl MediumLibrary {
         let volume = (Arc::new(medium), bounds);
         volumes.insert(key, volume.clone());
         Ok(volume)
+    }
+
+    /// The grid of bounds of a medium, built where it was not: the pilots of a scene share that of its image.
+    ///
+    /// # Errors
+    /// If building it fails.
+    pub(crate) fn bound_grid(
+        &self,
+        (medium, longest): (&MediumSpec, u32),
+        build: impl FnOnce() -> Result<BoundGrid, Failure>,
+    ) -> Result<Arc<BoundGrid>, Failure> {
+        let mut grids = self.grids.lock().expect("no thread panics while it builds a grid");
+        if let Some((.., grid)) = grids.iter().find(|(spec, n, _)| (spec, *n) == (medium, longest)) {
+            return Ok(Arc::clone(grid));
+        }
+        let grid = Arc::new(build()?);
+        grids.push((medium.clone(), longest, Arc::clone(&grid)));
+        Ok(grid)
     }
 }
 

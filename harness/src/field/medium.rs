@@ -69,18 +69,25 @@ impl AnyMedium {
         }
     }
 
-    /// The greatest extinction that the medium declares, positive also where there is none; `key` is what needs it.
+    /// The bound of σ_t that the medium declares, 0 at least \[1/length\]; `key` is what it stands for.
+    ///
+    /// # Errors
+    /// If it declares none.
+    pub fn declared_extinction(&self, key: &str) -> Result<f64, Failure> {
+        self.upper_bound().map(|bound| bound.max(0.0)).ok_or_else(|| {
+            Failure::refused(format!(
+                "{key}: this key is missing, and the medium declares no majorant that could stand for it"
+            ))
+        })
+    }
+
+    /// The same, positive also where there is none.
     ///
     /// # Errors
     /// If it declares none.
     pub fn greatest_extinction(&self, key: &str) -> Result<f64, Failure> {
-        let bound = self.upper_bound().ok_or_else(|| {
-            Failure::refused(format!(
-                "{key}: this key is missing, and the medium declares no majorant that could stand for it"
-            ))
-        })?;
         // Walks through nothing need a rate all the same; at this one they never collide.
-        Ok(bound.max(f64::MIN_POSITIVE))
+        self.declared_extinction(key).map(|bound| bound.max(f64::MIN_POSITIVE))
     }
 }
 

@@ -4,10 +4,9 @@ use super::single_scattering::SingleScatteringPlan;
 use super::transport::{PathTracerPlan, Stage, VplPlan};
 use super::{AnyPhase, WalkPlan};
 use crate::Failure;
-use crate::estimator::{Shadow, Unlawful};
-use crate::field::AnyMedium;
+use crate::estimator::{InScene, Preparation, Shadow, Unlawful};
 use crate::spec::{IntegratorSpec, Particles, TransmittanceSpec};
-use fairflight_media::{Bounds, Line, LineThickness};
+use fairflight_media::{Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::Seeded;
@@ -108,24 +107,25 @@ impl Counts {
 }
 
 impl IntegratorPlan {
-    /// The integrator of a spec in a medium.
+    /// The integrator of a spec in a scene.
     ///
     /// # Errors
     /// If a parameter is not lawful, or the medium has no closed form that the integrator needs.
-    pub fn build(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
-        let plan = Self::of(spec, medium, bounds)?;
+    pub fn build(spec: &IntegratorSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
+        let plan = Self::of(spec, scene)?;
         match plan.needs_closed_form() {
-            Some(what) if !medium.has_closed_form() => Err(Failure::refused(format!(
+            Some(what) if !scene.medium.has_closed_form() => Err(Failure::refused(format!(
                 "integrator.{what} needs a medium whose optical thickness has a closed form: homogeneous, analytic_cosine or vdb"
             ))),
             _ => Ok(plan),
         }
     }
 
-    fn of(spec: &IntegratorSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+    fn of(spec: &IntegratorSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
+        let (medium, bounds) = (scene.medium, scene.bounds);
         match spec {
             IntegratorSpec::Transmittance(TransmittanceSpec { estimator }) => {
-                estimator.kind().for_all_rays("integrator.estimator").map(Self::Transmittance)
+                estimator.kind().for_all_rays(scene, "integrator.estimator").map(Self::Transmittance)
             }
             IntegratorSpec::ParticleTracer(tracer) => {
                 let walk = WalkPlan::build(&tracer.walk, medium, bounds)?;
@@ -142,14 +142,22 @@ impl IntegratorPlan {
                 majorant: spec.majorant,
             }),
             IntegratorSpec::SingleScattering(spec) => {
-                SingleScatteringPlan::build(spec).map(Self::SingleScattering)
+                SingleScatteringPlan::build(spec, scene).map(Self::SingleScattering)
             }
-            IntegratorSpec::PathTracer(spec) => {
-                PathTracerPlan::build(spec, medium, bounds).map(Self::PathTracer)
-            }
-            IntegratorSpec::Vpl(spec) => {
-                VplPlan::build(spec, medium, bounds).map(|plan| Self::Vpl(Box::new(plan)))
-            }
+            IntegratorSpec::PathTracer(spec) => PathTracerPlan::build(spec, scene).map(Self::PathTracer),
+            IntegratorSpec::Vpl(spec) => VplPlan::build(spec, scene).map(|plan| Self::Vpl(Box::new(plan))),
+        }
+    }
+
+    /// The look-ups that were made to prepare its estimator of transmittance.
+    #[must_use]
+    pub fn preparation(&self) -> Option<&Preparation> {
+        match self {
+            Self::Transmittance(shadow) => shadow.preparation(),
+            Self::SingleScattering(plan) => plan.shadow.preparation(),
+            Self::PathTracer(plan) => plan.transport.shadow.preparation(),
+            Self::Vpl(plan) => plan.transport.shadow.preparation(),
+            Self::ParticleTracer(_) | Self::PhotonTracer(_) | Self::LineSplitting { .. } => None,
         }
     }
 

@@ -6,6 +6,7 @@
 
 mod integrator;
 mod phase;
+mod rays;
 mod scene;
 mod single_scattering;
 mod surfaces;

@@ -1,7 +1,9 @@
 //! A scene whose parts fit together.
 
+use super::rays::rays_of;
 use super::{AnyPhase, IntegratorPlan, surfaces};
 use crate::Failure;
+use crate::estimator::InScene;
 use crate::field::{AnyMedium, MediumLibrary};
 use crate::image::Image;
 use crate::spec::{
@@ -87,7 +89,14 @@ impl ScenePlan {
         } else {
             Spectra::Colour(Radiant::build(spec, &maps, DVec3::from_array)?)
         };
-        let integrator = IntegratorPlan::build(&spec.integrator, &medium, &bounds)?;
+        let scene = InScene {
+            medium: &medium,
+            spec: spec.medium.as_ref().map(|volume| &volume.medium),
+            bounds: &bounds,
+            rays: rays_of(spec, &bounds),
+            library,
+        };
+        let integrator = IntegratorPlan::build(&spec.integrator, &scene)?;
         Ok(Self {
             camera: spec.camera,
             medium,

@@ -3,7 +3,7 @@
 use super::integrator::{AnyIntegrator, SceneVolume, admits_majorant, plain};
 use crate::Failure;
 use crate::estimator::{
-    ControlSpec, DoubleParticleSpec, EstimatorSpec, LineIntegralSpec, SamplingSpec, Shadow,
+    ControlSpec, DoubleParticleSpec, EstimatorSpec, InScene, LineIntegralSpec, SamplingSpec, Shadow,
     SingleParticleSpec, Unlawful,
 };
 use crate::spec::{SingleScatteringSpec, Strategy};
@@ -24,7 +24,7 @@ pub struct SingleScatteringPlan {
     sampling: Sampling,
     samples: u32,
     primary: PrimaryPlan,
-    shadow: Shadow,
+    pub(super) shadow: Shadow,
     /// Explorers of the scattering-driven technique, and of the control where there is one.
     explorers: usize,
     /// Rays that share them.
@@ -49,7 +49,7 @@ impl SingleScatteringPlan {
     ///
     /// # Errors
     /// If the estimator does not give transmittance at every distance, or a parameter is not lawful.
-    pub(super) fn build(spec: &SingleScatteringSpec) -> Result<Self, Failure> {
+    pub(super) fn build(spec: &SingleScatteringSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
         let (shadow, key) = match &spec.shadow {
             Some(shadow) => (shadow, "integrator.shadow"),
             None => (&spec.estimator, "integrator.estimator"),
@@ -59,7 +59,7 @@ impl SingleScatteringPlan {
             sampling: sampling(spec.sampling, spec.heuristic),
             samples: spec.samples_per_ray,
             primary: PrimaryPlan::build(spec, count.is_some())?,
-            shadow: shadow.kind().for_all_rays(key)?,
+            shadow: shadow.kind().for_all_rays(scene, key)?,
             explorers: count.unwrap_or(EXPLORERS),
             shared: spec.shared_explorers,
         })

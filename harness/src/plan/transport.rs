@@ -3,11 +3,10 @@
 use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
 use super::{AnyPhase, Radiant, SpaceSampling, WalkPlan};
 use crate::Failure;
-use crate::estimator::{Shadow, ShadowWorker, Unlawful};
-use crate::field::AnyMedium;
+use crate::estimator::{InScene, Shadow, ShadowWorker, Unlawful};
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
-use fairflight_media::{Bounds, LineThickness};
+use fairflight_media::LineThickness;
 use fairflight_paths::transport::{MadeOf, Types, Vertex, World};
 use fairflight_paths::{Heuristic, PathTracer};
 use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
@@ -76,13 +75,13 @@ pub struct VplPlan {
 const PROBES: u32 = 4;
 
 impl TransportPlan {
-    fn build(spec: &TransportSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+    fn build(spec: &TransportSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
         const KEY: &str = "integrator.estimator";
         Ok(Self {
-            walk: WalkPlan::build(&spec.walk, medium, bounds)?,
+            walk: WalkPlan::build(&spec.walk, scene.medium, scene.bounds)?,
             shadow: match &spec.estimator {
-                Some(estimator) => estimator.kind().for_all_rays(KEY)?,
-                None => Shadow::default_for(medium, KEY)?,
+                Some(estimator) => estimator.kind().for_all_rays(scene, KEY)?,
+                None => Shadow::default_for(scene, KEY)?,
             },
             heuristic: spec.heuristic,
         })
@@ -90,23 +89,23 @@ impl TransportPlan {
 }
 
 impl PathTracerPlan {
-    pub(super) fn build(spec: &PathTracerSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
-        let transport = TransportPlan::build(&spec.transport, medium, bounds)?;
+    pub(super) fn build(spec: &PathTracerSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
+        let transport = TransportPlan::build(&spec.transport, scene)?;
         Ok(Self { transport, max_vertices: spec.max_vertices })
     }
 }
 
 impl VplPlan {
-    pub(super) fn build(spec: &VplSpec, medium: &AnyMedium, bounds: &Bounds) -> Result<Self, Failure> {
+    pub(super) fn build(spec: &VplSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
         // Nothing is looked up where nothing is placed by it.
         let cells = if spec.compensation.is_some() { spec.local_mean_cells } else { 1 };
         Ok(Self {
-            transport: TransportPlan::build(&spec.transport, medium, bounds)?,
+            transport: TransportPlan::build(&spec.transport, scene)?,
             light_paths: spec.light_paths,
             eye_samples: spec.eye_samples,
             clamp: spec.clamp,
             compensation: spec.compensation,
-            mean: LocalMean::of(medium, bounds, [cells; 3], PROBES),
+            mean: LocalMean::of(scene.medium, scene.bounds, [cells; 3], PROBES),
             keep_near: spec.keep_near,
             component: spec.component,
         })

@@ -2,6 +2,7 @@
 
 use super::canvas::{Drawn, MeanVariance, Spent};
 use super::pixel::Pixel;
+use crate::estimator::Preparation;
 use crate::image::Image;
 use crate::plan::{IntegratorPlan, ScenePlan};
 use crate::result::{Provenance, number};
@@ -236,7 +237,12 @@ impl Moments {
                 per_lookup: efficiency(lookups as f64),
             },
             virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
-            method: format!("{method}; seconds by the clock on the wall; look-ups are counted while it runs"),
+            method: format!(
+                "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}",
+                plan.integrator.preparation().map_or_else(String::new, |Preparation { lookups, purpose }| {
+                    format!("; {lookups} before the first pixel, for {purpose}, are not charged")
+                })
+            ),
             warnings,
             provenance,
         }

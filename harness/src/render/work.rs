@@ -162,7 +162,7 @@ impl Chords {
             Expected::Exactly(lookups) => lookups,
             Expected::Between(least, most) => least.max(most * self.passed),
         };
-        (work.preparation + lookups).max(1.0)
+        (work.on_each_ray + lookups).max(1.0)
     }
 
     fn single_scattering(&self, spec: &SingleScatteringSpec, lights: usize) -> f64 {
