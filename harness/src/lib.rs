@@ -12,8 +12,10 @@ mod environment;
 mod estimate;
 mod failure;
 mod info;
-
+mod parallel;
 mod render;
+#[cfg(test)]
+mod testing;
 mod verify;
 
 pub mod budget;

@@ -285,3 +285,26 @@ fn reports_are_generated_and_say_by_what() {
         assert!(comment || covered, "{} does not say what made it", path.display());
     }
 }
+
+/// Streams of reports, comparisons and advice have names: a number would be a place in a list, which moves when something is added to it.
+///
+/// Seen in the text: nothing there derives a child by its number but `Seeded::for_batch` (batches and pixels have no other name), and what
+/// a call of a function of seeds is given begins with no digit and, where it is a string, says a word beside what is put into it.
+#[test]
+fn seeds_of_reports_are_made_from_names() {
+    for folder in ["harness/src/report", "harness/src/comparison", "harness/src/advise"] {
+        for (path, text) in sources(folder) {
+            assert!(!text.contains("derive_seed"), "{} derives a seed from a number", path.display());
+            for call in text.split("seed(").skip(1) {
+                let call = call.split(';').next().unwrap_or_default();
+                let (_, name) = call.split_once('"').unwrap_or_default();
+                let name = name.split('"').next().unwrap_or_default();
+                let words: String =
+                    name.split('{').map(|part| part.rsplit('}').next().unwrap_or_default()).collect();
+                let is_word = name.is_empty() || words.contains(char::is_alphabetic);
+                let is_number = call.starts_with(|c: char| c.is_ascii_digit());
+                assert!(is_word && !is_number, "{}: seed({call}", path.display());
+            }
+        }
+    }
+}

@@ -28,7 +28,7 @@ mod seeded;
 pub use counting::Counting;
 pub use points::{Halton, Hammersley, LatinHypercube, PointSet, PointSetError, PointSource, Sobol};
 pub use scripted::Scripted;
-pub use seeded::{Seeded, derive_seed};
+pub use seeded::{Seeded, derive_seed, named_seed};
 
 /// The largest variate that a source returns: 1 − 2^-53.
 pub const LARGEST_VARIATE: f64 = 1.0 - f64::EPSILON / 2.0;

@@ -40,6 +40,7 @@ pub mod kolmogorov_smirnov;
 pub mod moments;
 pub mod normal;
 pub mod reference;
+pub mod student;
 pub mod verdict;
 
 pub use approximation::NormalApproximation;
@@ -56,6 +57,7 @@ pub use moments::Moments;
 pub use policy::{DEFAULT_ALPHA, MAX_DETECTABLE_RELATIVE_BIAS, POWER};
 pub use reference::{Certainty, Reference, Scores, Tails};
 pub use sample_size::samples_needed;
+pub use student::student_two_sided_quantile;
 pub use verdict::{MeanTest, StandardErrorSource, Verdict};
 
 #[cfg(test)]

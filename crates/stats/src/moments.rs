@@ -168,6 +168,16 @@ impl Moments {
         self.maximum = self.maximum.max(other.maximum);
     }
 
+    /// The moments of these values and of `count` zeros: of scores that most samples miss.
+    #[must_use]
+    pub fn with_zeros(&self, count: u64) -> Self {
+        let mut all = *self;
+        if count > 0 {
+            all.merge(&Self { count, minimum: 0.0, maximum: 0.0, ..Self::new() });
+        }
+        all
+    }
+
     /// Number of values, N.
     #[must_use]
     pub const fn count(&self) -> u64 {

@@ -150,3 +150,15 @@ fn a_block_knows_its_least_and_its_greatest_value() {
         }
     }
 }
+
+#[test]
+fn zeros_are_values_too() {
+    let scores = [3.0, 1.5, 2.25];
+    let all: Vec<f64> = scores.into_iter().chain([0.0; 5]).collect();
+    let (found, exact) = (Moments::from_slice(&scores).with_zeros(5), Moments::from_slice(&all));
+    assert_eq!((found.count(), found.minimum(), found.maximum()), (8, Some(0.0), Some(3.0)));
+    for of in [Moments::mean, Moments::sample_variance, Moments::excess_kurtosis] {
+        assert_relative_eq!(of(&found).unwrap(), of(&exact).unwrap(), max_relative = 1e-14);
+    }
+    assert_eq!(Moments::from_slice(&scores).with_zeros(0), Moments::from_slice(&scores));
+}

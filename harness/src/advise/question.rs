@@ -11,13 +11,15 @@ use crate::report::document::Volume;
 use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec};
 use fairflight_media::{Bounds, Medium, Tolerance};
 use fairflight_scene::Camera;
-use fairflight_sources::{Seeded, UniformSource, derive_seed};
+use fairflight_sources::{Seeded, UniformSource, named_seed};
 use std::io::Read;
 
 /// Chords shorter than this share of the medium's extent say little.
 const LEAST: f64 = 0.1;
 /// How exactly the transmittance of a ray is known, relative to its optical thickness: well below any variance that is measured.
 const TOLERANCE: f64 = 1e-7;
+/// The stream that the rays are chosen from.
+const RAYS: &str = "advise/rays";
 /// Camera rays that are tried for one that meets the medium.
 const TRIES: usize = 200;
 
@@ -92,7 +94,7 @@ impl Question {
         let in_medium = |failure: Failure| failure.within(&self.name);
         let profiles = match &self.camera {
             Some(camera) => self.camera_rays(camera),
-            None => chords(&self.medium, &self.bounds, self.rays, LEAST, derive_seed(self.seed, 0)),
+            None => chords(&self.medium, &self.bounds, self.rays, LEAST, named_seed(self.seed, RAYS)),
         }
         .map_err(in_medium)?;
         let majorant = match self.majorant {
@@ -118,7 +120,7 @@ impl Question {
 
     /// Rays through random points of the image that meet the bounds.
     fn camera_rays(&self, camera: &Camera) -> Result<Vec<AnyProfile>, Failure> {
-        let mut source = Seeded::new(derive_seed(self.seed, 1));
+        let mut source = Seeded::new(named_seed(self.seed, RAYS));
         let [columns, rows] = camera.resolution();
         let mut profiles = Vec::new();
         for _ in 0..self.rays * TRIES {

@@ -4,12 +4,14 @@ use super::answer::{Advice, Answer, Contestant, How};
 use super::forecast::Signs;
 use super::question::Question;
 use crate::budget::{Budget, patience, seconds_per_lookup};
-use crate::comparison::{Bout, Effort, Entrant, Facts, RaySet, TestRay, Unit, entrants, facts, fight, gain};
+use crate::comparison::{
+    Bout, Effort, Entrant, Facts, RaySet, TestRay, Unit, bouts_of, entrants, facts, gain,
+};
 use crate::estimator::pilot;
+use crate::parallel::in_parallel;
 use crate::{Environment, Failure};
-use fairflight_sources::derive_seed;
+use fairflight_sources::named_seed;
 use fairflight_transmittance::Pilot;
-use rayon::prelude::*;
 
 /// Estimates per ray of a trial, and of a measurement.
 const TRIAL: Effort = Effort { samples: 64, counted: 64, closed: false };
@@ -57,24 +59,21 @@ pub(super) fn answer(
     seed: u64,
     environment: &Environment,
 ) -> Result<Answer, Failure> {
-    let facts = facts(set, derive_seed(seed, 2));
-    let signs: Vec<Signs> = set
-        .rays
-        .par_iter()
-        .enumerate()
-        .map(|(i, ray)| {
-            let seed = derive_seed(derive_seed(seed, 3), i as u64);
-            Signs::of(ray, pilot(&ray.profile, ray.majorant, seed), derive_seed(seed, 1))
-        })
-        .collect();
+    let facts = facts(set, named_seed(seed, "advise/facts"));
+    let signs: Vec<Signs> = in_parallel(set.rays.len(), &|i| {
+        let ray = &set.rays[i];
+        let of = |what: &str| named_seed(seed, &format!("advise/{what}/ray {i}"));
+        Signs::of(ray, pilot(&ray.profile, ray.majorant, of("pilot")), of("mean square"))
+    });
     let progress = environment.progress(entrants().len() as u64 + (BEST as u64 + 1), "advising");
     let mut expected: Vec<Expected> = Vec::new();
-    for (e, entrant) in entrants().into_iter().enumerate() {
+    for entrant in entrants() {
         // Not every medium knows its bounds in cells.
         if entrant.needs_cells && entrant.on(&set.rays[0], &facts[0]).is_err() {
             continue;
         }
-        expected.push(expect(entrant, set, &facts, &signs, derive_seed(derive_seed(seed, 4), e as u64))?);
+        let seed = named_seed(seed, &format!("advise/trial/{}", entrant.name));
+        expected.push(expect(entrant, set, &facts, &signs, seed)?);
         progress.inc(1);
     }
     expected.sort_by(|a, b| a.log_price.total_cmp(&b.log_price));
@@ -85,9 +84,10 @@ pub(super) fn answer(
         .chain(expected.iter().filter(|expected| expected.entrant.name != "ratio tracking").take(BEST))
         .collect();
     let mut measured: Vec<(Entrant, Vec<Bout>)> = Vec::new();
-    for (e, expected) in chosen.into_iter().enumerate() {
-        let seed = derive_seed(derive_seed(seed, 5), e as u64);
-        measured.push((expected.entrant, measure(expected.entrant, set, &facts, MEASUREMENT, seed)?));
+    for expected in chosen {
+        let seed = named_seed(seed, &format!("advise/measurement/{}", expected.entrant.name));
+        measured
+            .push((expected.entrant, bouts_of(&expected.entrant, set, &facts, MEASUREMENT, seed, &|| ())?));
         progress.inc(1);
     }
     progress.finish_and_clear();
@@ -95,7 +95,7 @@ pub(super) fn answer(
     let mut advice: Vec<Advice> = measured
         .iter()
         .filter_map(|(entrant, bouts)| {
-            let of = |unit| gain(bouts, &baseline, unit, derive_seed(seed, 6));
+            let of = |unit| gain(bouts, &baseline, unit, named_seed(seed, "advise/bootstrap"));
             Some(Advice::of(entrant, bouts, (of(Unit::Lookups)?, of(Unit::Seconds)?), set, &facts))
         })
         .collect();
@@ -129,7 +129,7 @@ fn expect(
         Some(logs) => (logs, How::Forecast),
         None => {
             let few = RaySet { rays: set.rays.iter().take(TRIAL_RAYS).cloned().collect(), ..set.clone() };
-            let bouts = measure(entrant, &few, facts, TRIAL, seed)?;
+            let bouts = bouts_of(&entrant, &few, facts, TRIAL, seed, &|| ())?;
             (bouts.iter().map(|bout| log_price(bout.relative_variance, bout.lookups)).collect(), How::Trial)
         }
     };
@@ -138,19 +138,4 @@ fn expect(
 
 fn log_price(relative_variance: f64, lookups: f64) -> f64 {
     relative_variance.max(1e-26).ln() + lookups.max(1.0).ln()
-}
-
-fn measure(
-    entrant: Entrant,
-    set: &RaySet,
-    facts: &[Facts],
-    effort: Effort,
-    seed: u64,
-) -> Result<Vec<Bout>, Failure> {
-    set.rays
-        .par_iter()
-        .zip(facts)
-        .enumerate()
-        .map(|(r, (ray, facts))| fight(ray, &entrant.on(ray, facts)?, effort, derive_seed(seed, r as u64)))
-        .collect()
 }

@@ -25,6 +25,8 @@ pub struct Gain {
     pub tenth: f64,
 }
 
+/// Resamples of the interval.
+const RESAMPLES: usize = 2000;
 /// Below this a variance is rounding: gains beyond are not told apart.
 const ROUNDING: f64 = 1e-26;
 
@@ -47,7 +49,7 @@ pub fn gain(ours: &[Bout], theirs: &[Bout], unit: Unit, seed: u64) -> Option<Gai
     sorted.sort_unstable_by(f64::total_cmp);
     Some(Gain {
         mean: mean(&logs).exp(),
-        interval: bootstrap(&logs, seed).map(f64::exp),
+        interval: bootstrap_mean(&logs, RESAMPLES, seed).map(f64::exp),
         worst: sorted[0].exp(),
         tenth: sorted[sorted.len() / 10].exp(),
     })
@@ -57,20 +59,19 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The 2.5 and 97.5 % quantiles of means of as many values drawn with replacement (Efron 1979).
-fn bootstrap(values: &[f64], seed: u64) -> [f64; 2] {
-    const RESAMPLES: usize = 2000;
+/// The 2.5 and 97.5 % quantiles of means of as many values drawn with replacement, `resamples` times (Efron 1979); 0 without values.
+pub(crate) fn bootstrap_mean(values: &[f64], resamples: usize, seed: u64) -> [f64; 2] {
+    if values.is_empty() {
+        return [0.0; 2];
+    }
     let mut source = Seeded::new(seed);
-    let mut means: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            let sum: f64 = (0..values.len())
-                .map(|_| values[(source.next_uniform() * values.len() as f64) as usize])
-                .sum();
-            sum / values.len() as f64
-        })
-        .collect();
+    let mut resample = || {
+        let drawn = (0..values.len()).map(|_| values[(source.next_uniform() * values.len() as f64) as usize]);
+        drawn.sum::<f64>() / values.len() as f64
+    };
+    let mut means: Vec<f64> = (0..resamples).map(|_| resample()).collect();
     means.sort_unstable_by(f64::total_cmp);
-    [means[RESAMPLES / 40], means[RESAMPLES - 1 - RESAMPLES / 40]]
+    [means[resamples / 40], means[resamples - 1 - resamples / 40]]
 }
 
 #[cfg(test)]

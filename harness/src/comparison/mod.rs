@@ -10,7 +10,8 @@ mod gain;
 mod rays;
 
 pub use bout::{Bout, Effort, Pooled, fight, pooled};
-pub use contest::{Contest, contest, facts, facts_of};
+pub use contest::{Contest, bouts_of, contest, facts, facts_of};
 pub use entrant::{Entrant, Facts, entrants};
+pub(crate) use gain::bootstrap_mean;
 pub use gain::{Gain, Unit, gain};
 pub use rays::{RaySet, TestRay, chords};

@@ -1,12 +1,12 @@
 //! Rays to compare estimators on.
 
 use crate::field::{AnyMedium, AnyProfile};
+use crate::parallel::try_in_parallel;
 use crate::reference::Truth;
 use crate::{Failure, interrupt};
 use fairflight_media::{Bounds, Tolerance};
 use fairflight_sources::{Seeded, UniformSource};
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// A profile with what is known of it.
 #[derive(Clone, Debug)]
@@ -60,15 +60,13 @@ impl RaySet {
         tolerance: Tolerance,
     ) -> Result<Self, Failure> {
         const PRACTICALLY_EMPTY: f64 = 1e-3;
-        let rays: Result<Vec<TestRay>, Failure> = profiles
-            .into_par_iter()
-            .map(|profile| {
-                interrupt::check()?;
-                let truth = Truth::of(&profile, tolerance)?;
-                Ok(TestRay { profile, truth, majorant })
-            })
-            .collect();
-        let mut rays = rays?;
+        let truths = try_in_parallel(profiles.len(), &|i| {
+            interrupt::check()?;
+            Truth::of(&profiles[i], tolerance)
+        })?;
+        let met = profiles.into_iter().zip(truths);
+        let mut rays: Vec<TestRay> =
+            met.map(|(profile, truth)| TestRay { profile, truth, majorant }).collect();
         rays.retain(|ray| {
             let mean = ray.truth.optical_thickness / ray.profile.length();
             ray.truth.optical_thickness * mean / majorant >= PRACTICALLY_EMPTY

@@ -3,6 +3,7 @@
 use super::document::{self, Volume};
 use super::registry::{REPORTS, ReportKind, Study, find};
 use super::result::Report;
+use super::run::Run;
 use super::stability::stability;
 use super::study::{Options, standard};
 use super::write::{self, Files};
@@ -52,7 +53,7 @@ fn report(
                     vdb: volume(arguments),
                     budget: Budget::of(arguments.budget),
                 };
-                study(&options, environment)
+                study(&Run::new(kind.name, &options, environment))
             })?;
             (document.seconds, document.unsound.is_empty())
         }
@@ -115,10 +116,10 @@ mod tests {
         name: "made-up",
         about: "",
         takes_volume: false,
-        study: Study::Document(|options, _| {
+        study: Study::Document(|run| {
             let mut document = fixture_document();
             // The seed decides, so that both ends can be seen.
-            if options.seed == 2 {
+            if run.options.seed == 2 {
                 document.unsound.push("made up".to_owned());
             }
             Ok(document)

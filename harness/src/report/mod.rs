@@ -4,6 +4,7 @@ pub(crate) mod command;
 pub mod document;
 mod estimators;
 mod free_flight;
+mod measured;
 mod particle_tracing;
 pub(crate) mod registry;
 mod replicas;

@@ -1,8 +1,9 @@
 //! The reports that there are, by name.
 
-use super::document::{Document, Options};
+use super::document::Document;
+use super::run::Run;
 use super::{estimators, free_flight, particle_tracing, single_scattering, virtual_lights};
-use crate::{Environment, Failure};
+use crate::Failure;
 
 /// A report that can be asked for.
 pub(crate) struct ReportKind {
@@ -22,7 +23,7 @@ pub(crate) enum Study {
     /// The standard report, which has a structure of its own and takes a volume.
     Standard,
     /// A document, measured on the threads of the current pool.
-    Document(fn(&Options, &Environment) -> Result<Document, Failure>),
+    Document(fn(&Run<'_>) -> Result<Document, Failure>),
 }
 
 /// All reports; the first is the default.

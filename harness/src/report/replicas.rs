@@ -1,12 +1,14 @@
 //! A scene rendered several times over: images with the mean squared error that they have, and an interval of it.
 
+use super::document::{self, Pixels};
+use super::measured::{Measured, mean_and_error};
 use crate::Failure;
 use crate::field::MediumLibrary;
 use crate::plan::{ScenePlan, Spectra};
 use crate::render::{Moments, moments};
 use crate::spec::{SceneOverrides, SceneSpec};
 use fairflight_scene::EnvironmentMap;
-use fairflight_sources::derive_seed;
+use fairflight_sources::named_seed;
 use serde_json::Value;
 
 /// A scene of a report: the JSON that `harness render` takes, and perhaps a map that lights it.
@@ -70,7 +72,7 @@ impl Subject {
         library: &MediumLibrary,
     ) -> Result<Replicas, Failure> {
         let images = (0..u64::from(replicas.max(2)))
-            .map(|k| self.render(samples_per_pixel, derive_seed(seed, k), library))
+            .map(|k| self.render(samples_per_pixel, named_seed(seed, &format!("replica {k}")), library))
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Replicas { images, samples_per_pixel })
     }
@@ -122,66 +124,6 @@ pub(super) struct VirtualLights {
     pub(super) share_inside: f64,
 }
 
-/// A number with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Measured {
-    pub(super) value: f64,
-    pub(super) interval: [f64; 2],
-}
-
-impl Measured {
-    /// The mean of independent positive numbers, by Student's t of their logarithms: errors multiply.
-    fn of_positive(values: &[f64]) -> Self {
-        let n = values.len() as f64;
-        let value = values.iter().sum::<f64>() / n;
-        if values.iter().any(|&x| x <= 0.0) {
-            return Self { value, interval: [f64::NAN; 2] };
-        }
-        let mean = values.iter().map(|x| x.ln()).sum::<f64>() / n;
-        let variance = values.iter().map(|x| (x.ln() - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let factor = (student_quantile(values.len() - 1) * (variance / n).sqrt()).exp();
-        Self { value, interval: [value / factor, value * factor] }
-    }
-
-    /// The ratio of two independent ones, their relative errors added in squares.
-    pub(super) fn over(self, other: &Self) -> Self {
-        let half = |m: &Self| 0.5 * (m.interval[1] / m.interval[0]).ln();
-        let (value, width) = (self.value / other.value, half(&self).hypot(half(other)).exp());
-        Self { value, interval: [value / width, value * width] }
-    }
-
-    /// "value \[low, high\]" with so many digits behind the point.
-    pub(super) fn words(&self, digits: usize) -> String {
-        let [low, high] = self.interval;
-        format!("{:.digits$} [{low:.digits$}, {high:.digits$}]", self.value)
-    }
-
-    /// A decreasing or increasing function of it.
-    pub(super) fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        let [a, b] = self.interval.map(&function);
-        Self { value: function(self.value), interval: [a.min(b), a.max(b)] }
-    }
-
-    /// Whether it is certainly below another one: the intervals are apart.
-    pub(super) fn is_below(&self, other: &Self) -> bool {
-        self.interval[1] < other.interval[0]
-    }
-}
-
-/// The mean of independent numbers and its standard error.
-fn mean_and_error(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    (mean, (variance / n).sqrt())
-}
-
-/// The two-sided 95 % quantile of Student's t.
-fn student_quantile(degrees: usize) -> f64 {
-    const TABLE: [f64; 10] = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
-    TABLE.get(degrees.saturating_sub(1)).copied().unwrap_or(1.96)
-}
-
 impl Replicas {
     /// The mean over pixels of the squared error of one image, from the sample variance of its pixels: unbiased without a
     /// reference, for an unbiased integrator.
@@ -189,7 +131,7 @@ impl Replicas {
         let n = f64::from(self.samples_per_pixel);
         let variance = |image: &Picture| image.moments.variance().unwrap_or(f64::NAN);
         let errors: Vec<f64> = self.images.iter().map(|image| variance(image) / n).collect();
-        Measured::of_positive(&errors)
+        Measured::positive(&errors)
     }
 
     /// The mean over pixels of the squared difference of one image from a reference with the squared error `of_reference`, which
@@ -203,12 +145,25 @@ impl Replicas {
                 squares.sum::<f64>() / reference.len() as f64 - of_reference
             })
             .collect();
-        Measured::of_positive(&errors)
+        Measured::positive(&errors)
     }
 
     /// The first image: what one sees.
     pub(super) fn first(&self) -> &Picture {
         &self.images[0]
+    }
+
+    /// The first image for a gallery.
+    pub(super) fn picture(
+        &self,
+        id: impl Into<String>,
+        label: impl Into<String>,
+        lines: Vec<String>,
+        exposure: f64,
+    ) -> document::Picture {
+        let Picture { moments, resolution } = self.first();
+        let pixels = Pixels::Radiance { values: moments.means().to_vec(), exposure };
+        document::Picture { id: id.into(), label: label.into(), lines, resolution: *resolution, pixels }
     }
 
     /// The mean of all images, gray, and its squared error.
@@ -223,34 +178,32 @@ impl Replicas {
         (mean, self.squared_error().value / n)
     }
 
+    /// The mean radiance of each image.
+    fn means_of_images(&self) -> Vec<f64> {
+        self.images.iter().map(|image| image.gray().sum::<f64>() / image.means().len() as f64).collect()
+    }
+
     /// The mean radiance of all images and its standard error, from their scatter: right also where the pixels of an image share
     /// their randomness.
     pub(super) fn mean_of_images(&self) -> (f64, f64) {
-        let means: Vec<f64> =
-            self.images.iter().map(|image| image.gray().sum::<f64>() / image.means().len() as f64).collect();
-        mean_and_error(&means)
+        mean_and_error(&self.means_of_images())
     }
 
     /// The mean radiance of all images with its 95 % interval, from their scatter.
     pub(super) fn measured_mean(&self) -> Measured {
-        let (value, error) = self.mean_of_images();
-        let half = student_quantile(self.images.len() - 1) * error;
-        Measured { value, interval: [value - half, value + half] }
+        Measured::mean(&self.means_of_images())
     }
 
     /// CPU seconds of an image with its 95 % interval.
     pub(super) fn measured_seconds(&self) -> Measured {
         let seconds: Vec<f64> = self.images.iter().map(|image| image.moments.cpu_seconds()).collect();
-        Measured::of_positive(&seconds)
+        Measured::positive(&seconds)
     }
 
     /// The change of the mean radiance from `other`, image by image of the same seeds, with its 95 % interval.
     pub(super) fn measured_change(&self, other: &Self) -> Measured {
-        let mean = |image: &Picture| image.gray().sum::<f64>() / image.means().len() as f64;
-        let pairs = self.images.iter().zip(&other.images);
-        let (value, error) = mean_and_error(&pairs.map(|(a, b)| mean(a) - mean(b)).collect::<Vec<_>>());
-        let half = student_quantile(self.images.len() - 1) * error;
-        Measured { value, interval: [value - half, value + half] }
+        let pairs = self.means_of_images().into_iter().zip(other.means_of_images());
+        Measured::mean(&pairs.map(|(a, b)| a - b).collect::<Vec<_>>())
     }
 
     /// The change of each block of `side` x `side` pixels from `other`, row by row, with its standard error from the scatter of pairs of

@@ -289,6 +289,26 @@ pub struct Claim {
     pub comment: String,
 }
 
+impl Claim {
+    /// A line of the ledger: its place in it and its source, what is claimed, what was measured, the verdict and its comment.
+    pub(super) fn new(
+        (id, source): (&str, &str),
+        claim: impl Into<String>,
+        measured: String,
+        (verdict, comment): (ClaimVerdict, impl Into<String>),
+    ) -> Self {
+        let (claim, comment) = (claim.into(), comment.into());
+        Self { id: id.to_owned(), claim, source: source.to_owned(), measured, verdict, comment }
+    }
+}
+
+impl ClaimVerdict {
+    /// The verdict of a criterion that is met or not.
+    pub(super) fn of(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::DoesNotHold }
+    }
+}
+
 /// Whether a claim held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

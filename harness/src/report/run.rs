@@ -1,28 +1,42 @@
-//! What the parts of a report share: its options, its media, its seeds, and how far it has come.
+//! The context of a report that is being measured: options, media, seeds, progress.
 
-use super::document::Options;
+use super::document::{Document, Options, Section};
 use crate::Environment;
 use crate::field::MediumLibrary;
-use fairflight_sources::derive_seed;
+use fairflight_sources::named_seed;
 use indicatif::ProgressBar;
+use std::fmt::Display;
+use std::time::Instant;
 
 /// A report on its way.
-pub(super) struct Run<'a> {
+pub(crate) struct Run<'a> {
+    name: &'static str,
     pub(super) options: &'a Options,
     pub(super) media: MediumLibrary,
+    environment: &'a Environment,
     progress: ProgressBar,
+    clock: Instant,
+}
+
+/// A part of a report.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub(super) section: Section,
+    /// Findings against what was expected, one sentence each.
+    pub(super) unsound: Vec<String>,
 }
 
 impl<'a> Run<'a> {
-    /// A report of so many measurements.
-    pub(super) fn new(options: &'a Options, environment: &Environment, measurements: u64) -> Self {
-        let progress = environment.progress(measurements, "measuring");
-        Self { options, media: MediumLibrary::default(), progress }
+    /// The report of this name.
+    pub(super) fn new(name: &'static str, options: &'a Options, environment: &'a Environment) -> Self {
+        let progress = environment.progress(1, "measuring");
+        let (media, clock) = (MediumLibrary::default(), Instant::now());
+        Self { name, options, media, environment, progress, clock }
     }
 
-    /// A seed of its own for each measurement of each part.
-    pub(super) fn seed(&self, part: u64, measurement: u64) -> u64 {
-        derive_seed(derive_seed(self.options.seed, part), measurement)
+    /// The seed of the stream of this name, "study/subject/estimator": no number of a report depends on what else is in it.
+    pub(super) fn seed(&self, name: impl Display) -> u64 {
+        named_seed(self.options.seed, &format!("report/{}/{name}", self.name))
     }
 
     /// One of two values: the one for a quick report, or the full one.
@@ -50,7 +64,20 @@ impl<'a> Run<'a> {
         self.progress.inc(1);
     }
 
-    pub(super) fn finish(&self) {
+    /// The document of this run, which ends here, without contents.
+    pub(super) fn document(&self, title: &str) -> Document {
         self.progress.finish_and_clear();
+        Document {
+            provenance: self.environment.provenance(self.options.seed),
+            name: self.name.to_owned(),
+            title: title.to_owned(),
+            summary: Vec::new(),
+            quick: self.options.quick,
+            seconds: self.clock.elapsed().as_secs_f64(),
+            threads: self.options.threads,
+            unsound: Vec::new(),
+            claims: Vec::new(),
+            sections: Vec::new(),
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Speed against error of several integrators on one scene.
 
-use super::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
-use super::replicas::{Measured, Subject};
+use super::document::{Axis, Cell, Chart, Curve, Section, Table};
+use super::measured::Measured;
+use super::replicas::Subject;
 use super::run::Run;
 use crate::Failure;
 use serde_json::Value;
@@ -32,27 +33,27 @@ impl Speed {
     }
 }
 
-/// Measures each of `integrators` on `subject` at each number of `rays` per pixel; seeds are those of `part` and the ones after it.
+/// Measures each of `integrators` on `subject` at each number of `rays` per pixel.
 pub(super) fn compare(
     run: &Run<'_>,
-    (subject, part): (&Subject, u64),
+    subject: &Subject,
     integrators: Vec<(&'static str, Value)>,
     rays: &[u32],
     text: &str,
 ) -> Result<Speed, Failure> {
     let (mut by_lookups, mut by_seconds, mut efficiencies) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, (name, integrator)) in (0..).zip(integrators) {
+    for (i, (name, integrator)) in integrators.into_iter().enumerate() {
         let subject = subject.with("integrator", integrator);
         let (mut lookups, mut seconds) = (Vec::new(), Vec::new());
-        for (k, &rays) in (0..).zip(rays) {
-            let seed = run.seed(part + i, k);
+        for &rays in rays {
+            let seed = run.seed(format_args!("speed/{name}/{rays}"));
             let image = subject.measure(run.samples(rays), (seed, REPLICAS), &run.media)?;
             let error = image.squared_error();
             let rmse = error.map(f64::sqrt);
             let (time, looked_up) = (image.seconds(), image.lookups_per_pixel());
-            lookups.push(Mark::measured(looked_up, rmse.value, rmse.interval));
-            seconds.push(Mark::measured(time, rmse.value, rmse.interval));
-            efficiencies.truncate(i as usize);
+            lookups.push(rmse.mark(looked_up));
+            seconds.push(rmse.mark(time));
+            efficiencies.truncate(i);
             efficiencies.push(Efficiency {
                 name,
                 per_second: error.map(|error| 1.0 / (error * time)),
@@ -60,48 +61,38 @@ pub(super) fn compare(
             });
             run.advance();
         }
-        by_lookups.push(curve(name, lookups));
-        by_seconds.push(curve(name, seconds));
+        by_lookups.push(Curve::joined(name, lookups));
+        by_seconds.push(Curve::joined(name, seconds));
     }
-    let mut section = Section::new("speed", "Speed against error");
-    section.text = vec![text.to_owned()];
-    section.charts = vec![
-        chart("speed-lookups", "Error against look-ups", "look-ups per pixel [1]", by_lookups),
-        chart("speed-seconds", "Error against time", "CPU seconds of an image [s]", by_seconds),
-    ];
-    section.tables = vec![table(&efficiencies)];
+    let section = Section {
+        text: vec![text.to_owned()],
+        charts: vec![
+            chart("speed-lookups", "Error against look-ups", "look-ups per pixel [1]", by_lookups),
+            chart("speed-seconds", "Error against time", "CPU seconds of an image [s]", by_seconds),
+        ],
+        tables: vec![table(&efficiencies)],
+        ..Section::new("speed", "Speed against error")
+    };
     Ok(Speed { section, efficiencies })
 }
 
-/// Marks joined by a line.
-pub(super) fn curve(name: &str, marks: Vec<Mark>) -> Curve {
-    let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
-    Curve::method(name).with_line(line).with_marks(marks)
-}
-
 fn chart(id: &str, title: &str, x: &str, curves: Vec<Curve>) -> Chart {
-    let mut chart = Chart::new(id, title, Axis::logarithmic(x), Axis::logarithmic("RMSE [radiance]"));
-    chart.curves = curves;
-    chart
+    let (x, y) = (Axis::logarithmic(x), Axis::logarithmic("RMSE [radiance]"));
+    Chart { curves, ..Chart::new(id, title, x, y) }
 }
 
 fn table(efficiencies: &[Efficiency]) -> Table {
-    let mut table = Table::new(
-        "speed-table",
-        "Efficiency",
-        "At the largest number of rays. Per CPU second: on two cores an image takes half of that time.",
-        &[
-            ("integrator", ""),
-            ("1/(MSE · CPU s)", "1/(radiance² s)"),
-            ("1/(MSE · look-ups per pixel)", "1/radiance²"),
+    Table::of(
+        [
+            "speed-table",
+            "Efficiency",
+            "At the largest number of rays. Per CPU second: on two cores an image takes half of that time.",
         ],
-    );
-    for row in efficiencies {
-        table.rows.push(vec![
-            Cell::text(row.name),
-            Cell::measured(row.per_second.value, row.per_second.interval),
-            Cell::measured(row.per_lookup.value, row.per_lookup.interval),
-        ]);
-    }
-    table
+        efficiencies,
+        &[
+            ("integrator", "", &|row| Cell::text(row.name)),
+            ("1/(MSE · CPU s)", "1/(radiance² s)", &|row| row.per_second.cell()),
+            ("1/(MSE · look-ups per pixel)", "1/radiance²", &|row| row.per_lookup.cell()),
+        ],
+    )
 }

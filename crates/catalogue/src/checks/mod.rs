@@ -22,7 +22,7 @@ pub(crate) use regular::FirstEstimate;
 
 use crate::{hard_cases, twins};
 use fairflight_laws::{CheckResult, Run};
-use fairflight_sources::derive_seed;
+use fairflight_sources::named_seed;
 use fairflight_stats::sidak_level;
 
 /// False alarm of all checks together: one in a million.
@@ -178,7 +178,7 @@ impl Check {
     /// added. `alpha` is its share of the false alarm: [`check_level`].
     #[must_use]
     pub fn run(&self, effort: Effort, seed: u64, alpha: f64) -> CheckResult {
-        let seed = derive_seed(seed, fingerprint(&self.id));
+        let seed = named_seed(seed, &self.id);
         (self.function)(Run { samples: self.samples(effort), seed, alpha })
     }
 }
@@ -187,13 +187,6 @@ impl std::fmt::Debug for Check {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Check").field("id", &self.id).field("law", &self.law).finish_non_exhaustive()
     }
-}
-
-/// FNV-1a (Fowler, Noll & Vo 1991): a name as a number that is the same on every machine.
-fn fingerprint(name: &str) -> u64 {
-    name.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
-    })
 }
 
 /// All checks, in the order of a report.

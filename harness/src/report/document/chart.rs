@@ -103,6 +103,14 @@ impl Curve {
         Self { label: label.to_owned(), role: Role::Method, line: Vec::new(), marks: Vec::new() }
     }
 
+    /// Marks of a method, joined by a line.
+    #[must_use]
+    pub fn joined(label: &str, marks: impl IntoIterator<Item = Mark>) -> Self {
+        let marks: Vec<Mark> = marks.into_iter().collect();
+        let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
+        Self::method(label).with_line(line).with_marks(marks)
+    }
+
     /// A line that the methods are compared with, such as the exact answer.
     #[must_use]
     pub fn reference(label: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
@@ -195,6 +203,14 @@ pub struct Band {
     pub to: f64,
     /// What it is.
     pub label: String,
+}
+
+impl Band {
+    /// The band of a range, if it has a width.
+    #[must_use]
+    pub fn between([from, to]: [f64; 2], label: &str) -> Option<Self> {
+        (from < to).then(|| Self { from, to, label: label.to_owned() })
+    }
 }
 
 /// See [`number`].

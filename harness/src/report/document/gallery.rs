@@ -15,6 +15,20 @@ pub struct Gallery {
     pub rows: Vec<GalleryRow>,
 }
 
+impl Gallery {
+    /// One image of each measurement, in rows with a label.
+    #[must_use]
+    pub fn of_images(id: &str, title: &str, rows: Vec<(String, Vec<Picture>)>) -> Self {
+        let rows = rows.into_iter().map(|(label, pictures)| GalleryRow { label, pictures });
+        Self {
+            id: id.to_owned(),
+            title: title.to_owned(),
+            caption: "One image of each measurement.".to_owned(),
+            rows: rows.collect(),
+        }
+    }
+}
+
 /// A row of a gallery.
 #[derive(Clone, Debug, Serialize)]
 pub struct GalleryRow {

@@ -27,12 +27,6 @@ impl HeatMap {
     pub fn new(id: &str, title: &str, x: Axis, y: Axis, content: Content) -> Self {
         Self { id: id.to_owned(), title: title.to_owned(), caption: String::new(), x, y, content }
     }
-
-    /// The same heat map with this caption.
-    #[must_use]
-    pub fn with_caption(self, caption: impl Into<String>) -> Self {
-        Self { caption: caption.into(), ..self }
-    }
 }
 
 /// What is in the cells.
@@ -77,8 +71,8 @@ pub struct Panel<T> {
 
 impl<T> Panel<T> {
     /// The values of a function of x and y.
-    #[must_use]
-    pub fn of(label: &str, x: Vec<f64>, y: Vec<f64>, mut value: impl FnMut(f64, f64) -> T) -> Self {
+    #[cfg(test)]
+    pub(crate) fn of(label: &str, x: Vec<f64>, y: Vec<f64>, mut value: impl FnMut(f64, f64) -> T) -> Self {
         let values = y.iter().flat_map(|&y| x.iter().map(move |&x| (x, y)));
         let values = values.map(|(x, y)| value(x, y)).collect();
         Self { label: label.to_owned(), x, y, values }

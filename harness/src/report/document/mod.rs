@@ -80,25 +80,6 @@ pub struct Document {
     pub sections: Vec<Section>,
 }
 
-impl Document {
-    /// A document without contents, which took no time yet.
-    #[must_use]
-    pub fn new(name: &str, title: &str, options: &Options, provenance: Provenance) -> Self {
-        Self {
-            provenance,
-            name: name.to_owned(),
-            title: title.to_owned(),
-            summary: Vec::new(),
-            quick: options.quick,
-            seconds: 0.0,
-            threads: options.threads,
-            unsound: Vec::new(),
-            claims: Vec::new(),
-            sections: Vec::new(),
-        }
-    }
-}
-
 /// A part of a document: its text first, then its charts, heat maps, tables and galleries.
 ///
 /// The ids of sections, charts, heat maps, tables, galleries and pictures are names of files and places in the page: lower case letters,

@@ -34,6 +34,23 @@ impl Table {
     }
 }
 
+/// A column of a table of T: title, unit, and cell of a row.
+pub(in crate::report) type ColumnOf<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
+
+impl Table {
+    /// A table with a row for each of `rows`.
+    #[must_use]
+    pub(in crate::report) fn of<T>(
+        [id, title, caption]: [&str; 3],
+        rows: impl IntoIterator<Item = T>,
+        columns: &[ColumnOf<'_, T>],
+    ) -> Self {
+        let header: Vec<(&str, &str)> = columns.iter().map(|(title, unit, _)| (*title, *unit)).collect();
+        let cells = |row: T| columns.iter().map(|(.., cell)| cell(&row)).collect();
+        Self { rows: rows.into_iter().map(cells).collect(), ..Self::new(id, title, caption, &header) }
+    }
+}
+
 /// A column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Column {

@@ -7,14 +7,12 @@ use fairflight_media::{
     AnalyticCosine, BoundCell, BoundGrid, Bounds, BoxBounds, Extinction, InCells, Lattice, Line, Majorant,
     Medium, MediumBreakpoints, Ray, RayQuadrature, Tolerance, Voxels,
 };
-use fairflight_sources::{Seeded, UniformSource, derive_seed};
+use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::{ClosedForm, JitteredRatioInCells, ResidualCells, Theory};
 use glam::{DAffine3, DVec3};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// The part of the report, for its seeds.
-const PART: u64 = 5;
 /// Voxels a side of the large volume.
 const SIDE: usize = 256;
 /// Rays that are walked.
@@ -33,12 +31,12 @@ struct Dense {
 
 impl Dense {
     fn new(side: usize, seed: u64) -> Self {
-        let noise = |i: usize| (derive_seed(seed, i as u64) >> 11) as f64 / (1_u64 << 53) as f64;
+        let mut source = Seeded::new(seed);
         let at = |i: usize| {
             let centred = |j: usize| 2.0 * j as f64 / (side - 1) as f64 - 1.0;
             let (x, y, z) = (centred(i / (side * side)), centred(i / side % side), centred(i % side));
             let bump = (1.0 - (x * x + y * y + z * z)).max(0.0);
-            (bump * (0.5 + noise(i))) as f32
+            (bump * (0.5 + source.next_uniform())) as f32
         };
         let values: Vec<f32> = (0..side * side * side).map(at).collect();
         let range = values.iter().fold((0.0, 0.0), |(low, high): (f64, f64), &value| {
@@ -78,141 +76,136 @@ impl Lattice for Dense {
     }
 }
 
+/// A grid on a medium; costs are means over rays.
+struct Row {
+    medium: String,
+    side: usize,
+    /// Seconds.
+    build: f64,
+    bytes: usize,
+    cells: f64,
+    /// Seconds.
+    walk: f64,
+    /// Look-ups and the logarithm of the gain, of residual and of jittered ratio tracking.
+    residual: [f64; 2],
+    jittered: [f64; 2],
+}
+
 pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
-    let mut table = Table::new(
-        "cells-grids",
-        "Grids of bounds",
-        "Seconds on one core, memory of the grid, and its cells on random chords of the medium: their number (neighbours with the same bounds \
-         are one), the time to find them, and what residual ratio tracking and jittered ratio tracking (ε = 0.25) cost with them, as closed \
-         forms; the gain is that over ratio tracking with one majorant, the geometric mean over chords.",
-        &[
-            ("medium", ""),
-            ("boxes a side", "1"),
-            ("build", "s"),
-            ("memory", "MiB"),
-            ("cells a ray", "1"),
-            ("walk", "µs"),
-            ("residual: look-ups", "1"),
-            ("gain", "1"),
-            ("jittered: look-ups", "1"),
-            ("gain", "1"),
-        ],
-    );
     let refuse = |error: &dyn std::fmt::Display| Failure::refused(format!("cells: {error}"));
     let eq21 = AnalyticCosine::new(1.0).map_err(|error| refuse(&error))?;
     let sphere = AnalyticCosine::default_bounds();
-    let rows = Rows { run, seed: run.seed(PART, 0) };
-    rows.add(&mut table, "eq. 21", &eq21, &sphere, &[1, 8, 16, 32, 64, 128])?;
+    let mut rows = rows(run, "eq. 21", &eq21, &sphere, &[1, 8, 16, 32, 64, 128])?;
     run.advance();
     let side = run.quick_or(64, SIDE);
     // A cube of side 20, as thick as the sphere of eq. 21.
     let index_from_world = DAffine3::from_scale(DVec3::splat((side - 1) as f64 / 20.0));
-    let voxels = Voxels::new(Dense::new(side, run.seed(PART, 1)), index_from_world, 0.4)
+    let voxels = Voxels::new(Dense::new(side, run.seed("cells/voxels")), index_from_world, 0.4)
         .map_err(|error| refuse(&error))?;
     let cube = Bounds::Box { min: DVec3::ZERO, max: DVec3::splat(20.0) };
-    rows.add(&mut table, &format!("{side}³ voxels"), &voxels, &cube, &[1, 8, 16, 32, 64])?;
+    rows.extend(self::rows(run, &format!("{side}³ voxels"), &voxels, &cube, &[1, 8, 16, 32, 64])?);
     run.advance();
-    let mut section = Section::new("cells", "Majorants and minorants in cells");
-    section.text = vec![
-        "The bounds of eq. 21 in a box are the product of the exact ranges of its two factors, those of voxels the range of all values that \
+    let text = "The bounds of eq. 21 in a box are the product of the exact ranges of its two factors, those of voxels the range of all values that \
          are interpolated in it: exact. Tighter majorants alone lower the cost and raise the variance; with the minorant as control both \
-         fall. Expressions and noise do not know their bounds and are refused."
-            .to_owned(),
-    ];
-    section.tables = vec![table];
-    Ok(section)
+         fall. Expressions and noise do not know their bounds and are refused.";
+    let table = Table::of(
+        [
+            "cells-grids",
+            "Grids of bounds",
+            "Seconds on one core, memory of the grid, and its cells on random chords of the medium: their number (neighbours with the same bounds \
+             are one), the time to find them, and what residual ratio tracking and jittered ratio tracking (ε = 0.25) cost with them, as closed \
+             forms; the gain is that over ratio tracking with one majorant, the geometric mean over chords.",
+        ],
+        rows,
+        &[
+            ("medium", "", &|row| Cell::text(&*row.medium)),
+            ("boxes a side", "1", &|row| Cell::Count(row.side as u64)),
+            ("build", "s", &|row| Cell::Number(row.build)),
+            ("memory", "MiB", &|row| Cell::Number(row.bytes as f64 / f64::from(1 << 20))),
+            ("cells a ray", "1", &|row| Cell::Number(row.cells)),
+            ("walk", "µs", &|row| Cell::Number(1e6 * row.walk)),
+            ("residual: look-ups", "1", &|row| Cell::Number(row.residual[0])),
+            ("gain", "1", &|row| Cell::Number(row.residual[1].exp())),
+            ("jittered: look-ups", "1", &|row| Cell::Number(row.jittered[0])),
+            ("gain", "1", &|row| Cell::Number(row.jittered[1].exp())),
+        ],
+    );
+    Ok(Section {
+        text: vec![text.to_owned()],
+        tables: vec![table],
+        ..Section::new("cells", "Majorants and minorants in cells")
+    })
 }
 
-struct Rows<'a> {
-    run: &'a Run<'a>,
-    seed: u64,
+/// A row for each number of boxes a side.
+fn rows<M: BoxBounds + MediumBreakpoints>(
+    run: &Run<'_>,
+    name: &str,
+    medium: &M,
+    bounds: &Bounds,
+    sides: &[usize],
+) -> Result<Vec<Row>, Failure> {
+    const ROUNDS: usize = 20;
+    let rays = rays(run, medium, bounds)?;
+    let corners = corners(medium, bounds);
+    let row = |&side: &usize| {
+        let clock = Instant::now();
+        let grid = BoundGrid::build(medium, corners, [side; 3])
+            .map_err(|error| Failure::refused(format!("cells: {error}")))?;
+        let build = clock.elapsed().as_secs_f64();
+        let mut cells = Vec::new();
+        let clock = Instant::now();
+        for ray in (0..ROUNDS).flat_map(|_| &rays) {
+            grid.cells_along(ray.local_line(), ray.length(), &mut cells);
+            black_box(&cells);
+        }
+        let walk = clock.elapsed().as_secs_f64() / (ROUNDS * rays.len()) as f64;
+        let (medium, bytes) = (name.to_owned(), grid.bytes());
+        let mut row =
+            Row { medium, side, build, bytes, walk, cells: 0.0, residual: [0.0; 2], jittered: [0.0; 2] };
+        for ray in &rays {
+            grid.cells_along(ray.local_line(), ray.length(), &mut cells);
+            let [residual, jittered, ratio] = theories(ray, &cells);
+            let log_price =
+                |theory: &Theory| theory.log_relative_variance.max(-60.0) + theory.lookups.max(1.0).ln();
+            let baseline = ratio.log_relative_variance + ratio.lookups.ln();
+            let share = 1.0 / rays.len() as f64;
+            row.cells += share * cells.len() as f64;
+            for (sums, theory) in [(&mut row.residual, residual), (&mut row.jittered, jittered)] {
+                sums[0] += share * theory.lookups;
+                sums[1] += share * (baseline - log_price(&theory));
+            }
+        }
+        Ok(row)
+    };
+    sides.iter().map(row).collect()
 }
 
-impl Rows<'_> {
-    fn add<M: BoxBounds + MediumBreakpoints>(
-        &self,
-        table: &mut Table,
-        name: &str,
-        medium: &M,
-        bounds: &Bounds,
-        sides: &[usize],
-    ) -> Result<(), Failure> {
-        let rays = self.rays(medium, bounds)?;
-        let corners = corners(medium, bounds);
-        for &side in sides {
-            let clock = Instant::now();
-            let grid = BoundGrid::build(medium, corners, [side; 3])
-                .map_err(|error| Failure::refused(format!("cells: {error}")))?;
-            let built = clock.elapsed().as_secs_f64();
-            let mut cells = Vec::new();
-            let clock = Instant::now();
-            const ROUNDS: usize = 20;
-            for ray in (0..ROUNDS).flat_map(|_| &rays) {
-                grid.cells_along(ray.local_line(), ray.length(), &mut cells);
-                black_box(&cells);
-            }
-            let walk = clock.elapsed().as_secs_f64() / (ROUNDS * rays.len()) as f64;
-            let mut sums = [0.0; 5];
-            for ray in &rays {
-                grid.cells_along(ray.local_line(), ray.length(), &mut cells);
-                let [residual, jittered, ratio] = theories(ray, &cells);
-                let gain = |theory: &Theory| {
-                    ratio.log_relative_variance + ratio.lookups.ln()
-                        - theory.log_relative_variance.max(-60.0)
-                        - theory.lookups.max(1.0).ln()
-                };
-                for (sum, term) in sums.iter_mut().zip([
-                    cells.len() as f64,
-                    residual.lookups,
-                    gain(&residual),
-                    jittered.lookups,
-                    gain(&jittered),
-                ]) {
-                    *sum += term / rays.len() as f64;
-                }
-            }
-            table.rows.push(vec![
-                Cell::text(name),
-                Cell::Count(side as u64),
-                Cell::Number(built),
-                Cell::Number(grid.bytes() as f64 / f64::from(1 << 20)),
-                Cell::Number(sums[0]),
-                Cell::Number(1e6 * walk),
-                Cell::Number(sums[1]),
-                Cell::Number(sums[2].exp()),
-                Cell::Number(sums[3]),
-                Cell::Number(sums[4].exp()),
-            ]);
+/// Chords between two random points on the surface of the bounds' box or sphere.
+fn rays<'m, M: Medium>(run: &Run<'_>, medium: &'m M, bounds: &Bounds) -> Result<Vec<Ray<&'m M>>, Failure> {
+    let (centre, radius) = match *bounds {
+        Bounds::Sphere { center, radius } => (center, radius),
+        Bounds::Box { min, max } => (0.5 * (min + max), 0.5 * (max - min).max_element()),
+    };
+    let mut source = Seeded::new(run.seed("cells/chords"));
+    let mut point = || loop {
+        let p = DVec3::from_array(std::array::from_fn(|_| 2.0 * source.next_uniform() - 1.0));
+        if (0.01..=1.0).contains(&p.length()) {
+            return centre + radius * p.normalize();
         }
-        Ok(())
-    }
-
-    /// Chords between two random points on the surface of the bounds' box or sphere.
-    fn rays<'m, M: Medium>(&self, medium: &'m M, bounds: &Bounds) -> Result<Vec<Ray<&'m M>>, Failure> {
-        let (centre, radius) = match *bounds {
-            Bounds::Sphere { center, radius } => (center, radius),
-            Bounds::Box { min, max } => (0.5 * (min + max), 0.5 * (max - min).max_element()),
-        };
-        let mut source = Seeded::new(self.seed);
-        let mut point = || loop {
-            let p = DVec3::from_array(std::array::from_fn(|_| 2.0 * source.next_uniform() - 1.0));
-            if (0.01..=1.0).contains(&p.length()) {
-                return centre + radius * p.normalize();
-            }
-        };
-        let count = self.run.quick_or(12, RAYS);
-        let mut rays = Vec::new();
-        while rays.len() < count {
-            let (from, to) = (point(), point());
-            let clip = bounds
-                .clip(from, to - from, Some((to - from).length()))
-                .map_err(|error| Failure::refused(format!("cells: {error}")))?;
-            if let Some(clip) = clip.filter(|clip| clip.length > 0.2 * radius) {
-                rays.push(Ray::new(medium, &clip));
-            }
+    };
+    let count = run.quick_or(12, RAYS);
+    let mut rays = Vec::new();
+    while rays.len() < count {
+        let (from, to) = (point(), point());
+        let clip = bounds
+            .clip(from, to - from, Some((to - from).length()))
+            .map_err(|error| Failure::refused(format!("cells: {error}")))?;
+        if let Some(clip) = clip.filter(|clip| clip.length > 0.2 * radius) {
+            rays.push(Ray::new(medium, &clip));
         }
-        Ok(rays)
     }
+    Ok(rays)
 }
 
 /// Residual ratio tracking and jittered ratio tracking in `cells`, and ratio tracking with one majorant.

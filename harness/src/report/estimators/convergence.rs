@@ -10,18 +10,17 @@ use crate::estimator::{
 };
 use crate::experiment::draw;
 use crate::field::AnyProfile;
+use crate::parallel::try_in_parallel;
 use crate::reference::Truth;
-use crate::report::document::{Axis, Chart, Curve, Mark, Section};
+use crate::report::document::{Axis, Chart, Curve, Section};
+use crate::report::measured::{Measured, mean_and_error};
 use crate::report::run::Run;
 use fairflight_media::Tolerance;
-use fairflight_sources::{Seeded, derive_seed};
+use fairflight_sources::{Seeded, named_seed};
 use fairflight_transmittance::{CombShape, Hybrid};
-use rayon::prelude::*;
 
-/// The part of the report, for its seeds.
-const PART: u64 = 4;
 /// Independent means per point.
-const REPLICAS: u64 = 48;
+const REPLICAS: usize = 48;
 /// Estimates of a mean.
 const SAMPLES: [u64; 6] = [1, 4, 16, 64, 256, 1024];
 /// A progressive majorant begins with this share of the majorant.
@@ -33,22 +32,21 @@ pub(super) fn steps() -> u64 {
 
 pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     let smooth = seed_ray::ray(run)?;
-    let profile = AnyProfile::PiecewiseConstant(rough_profile(&mut Seeded::new(run.seed(PART, 0)))?);
+    let profile = AnyProfile::PiecewiseConstant(rough_profile(&mut Seeded::new(
+        run.seed("convergence/the rough ray"),
+    ))?);
     let truth = Truth::of(&profile, Tolerance::TIGHT)?;
     let rough = TestRay { profile, truth, majorant: 1.0 };
-    let mut section = Section::new("convergence", "Error against cost");
-    section.text = vec![format!(
+    let text = format!(
         "Root mean squared error over T of means of 1 to {} estimates, over {REPLICAS} independent means each, with 95 % intervals. Unbiased \
          estimators fall like one over the square root; biased ones stop at their bias; a progressive majorant, which begins at {GUESS} of the \
          majorant, is consistent: it falls all the same. Costs are those of all estimates of a mean together; pilots are not charged.",
         SAMPLES[SAMPLES.len() - 1]
-    )];
-    for (k, (id, name, ray)) in
-        (1..).zip([("smooth", "the seed ray", &smooth), ("rough", "a rough ray", &rough)])
-    {
-        section.charts.extend(charts(run, (id, name, ray), k)?);
-    }
-    Ok(section)
+    );
+    let smooth = charts(run, ("smooth", "the seed ray", &smooth))?;
+    let rough = charts(run, ("rough", "a rough ray", &rough))?;
+    let charts = smooth.into_iter().chain(rough).collect();
+    Ok(Section { text: vec![text], charts, ..Section::new("convergence", "Error against cost") })
 }
 
 fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, Prepared)>, Failure> {
@@ -81,54 +79,40 @@ fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, Prepared)>, Fa
     ])
 }
 
-fn charts(run: &Run<'_>, (id, name, ray): (&str, &str, &TestRay), k: u64) -> Result<[Chart; 2], Failure> {
-    let seed = run.seed(PART, k);
+fn charts(run: &Run<'_>, (id, name, ray): (&str, &str, &TestRay)) -> Result<[Chart; 2], Failure> {
+    let facts = run.seed(format_args!("convergence/{id}/facts"));
     let (mut by_lookups, mut by_seconds) = (Vec::new(), Vec::new());
-    for (e, (label, _)) in (0..).zip(players(ray, seed)?) {
+    for (e, (label, _)) in players(ray, facts)?.into_iter().enumerate() {
         let (mut lookups, mut seconds) = (Vec::new(), Vec::new());
-        for (i, &samples) in (0..).zip(&SAMPLES) {
-            let means: Result<Vec<[f64; 3]>, Failure> = (0..REPLICAS)
-                .into_par_iter()
-                .map(|replica| {
-                    // An estimator of its own: one that learns begins anew.
-                    let seed = derive_seed(derive_seed(derive_seed(seed, e), i), replica);
-                    let (_, estimator) = players(ray, seed)?.swap_remove(e as usize);
-                    let measured =
-                        draw(&ray.profile, &estimator, &ray.truth, (samples, seed, samples), &|_| ())?;
-                    let mean = measured.moments.mean().unwrap_or(f64::NAN);
-                    let error = (mean * ray.truth.optical_thickness.exp() - 1.0).powi(2);
-                    Ok([error, measured.lookups_per_sample * samples as f64, measured.seconds])
-                })
-                .collect();
-            let means = means?;
-            let average = |of: usize| means.iter().map(|mean| mean[of]).sum::<f64>() / REPLICAS as f64;
-            let squared = average(0);
-            let deviation = (means.iter().map(|mean| (mean[0] - squared).powi(2)).sum::<f64>()
-                / (REPLICAS * (REPLICAS - 1)) as f64)
-                .sqrt();
-            let interval = [(squared - 1.96 * deviation).max(0.25 * squared), squared + 1.96 * deviation];
-            let interval = interval.map(f64::sqrt);
-            lookups.push(Mark::measured(average(1).max(1.0), squared.sqrt(), interval));
-            seconds.push(Mark::measured(average(2), squared.sqrt(), interval));
+        for &samples in &SAMPLES {
+            let seed = run.seed(format_args!("convergence/{id}/{label}/{samples}"));
+            let means = try_in_parallel(REPLICAS, &|replica| {
+                // An estimator of its own: one that learns begins anew.
+                let seed = named_seed(seed, &format!("replica {replica}"));
+                let (_, estimator) = players(ray, named_seed(seed, "facts"))?.swap_remove(e);
+                let measured = draw(&ray.profile, &estimator, &ray.truth, (samples, seed, samples), &|_| ())?;
+                let mean = measured.moments.mean().unwrap_or(f64::NAN);
+                let error = (mean * ray.truth.optical_thickness.exp() - 1.0).powi(2);
+                Ok([error, measured.lookups_per_sample * samples as f64, measured.seconds])
+            })?;
+            let all = |of: usize| means.iter().map(|mean| mean[of]).collect::<Vec<_>>();
+            let Measured { value, interval: [low, high] } = Measured::mean(&all(0));
+            let rmse = Measured { value, interval: [low.max(0.25 * value), high] }.map(f64::sqrt);
+            lookups.push(rmse.mark(mean_and_error(&all(1)).0.max(1.0)));
+            seconds.push(rmse.mark(mean_and_error(&all(2)).0));
         }
         run.advance();
-        by_lookups.push(curve(label, lookups));
-        by_seconds.push(curve(label, seconds));
+        by_lookups.push(Curve::joined(label, lookups));
+        by_seconds.push(Curve::joined(label, seconds));
     }
-    let chart = |by: &str, unit: &str, curves| {
-        let mut chart = Chart::new(
+    let chart = |by: &str, unit: &str, curves| Chart {
+        curves,
+        ..Chart::new(
             &format!("convergence-{id}-{by}"),
             &format!("Error against {by}: {name}"),
             Axis::logarithmic(&format!("{by} [{unit}]")),
             Axis::logarithmic("RMSE / T [1]").within(1e-7, 1e2),
-        );
-        chart.curves = curves;
-        chart
+        )
     };
     Ok([chart("look-ups", "1", by_lookups), chart("seconds", "s", by_seconds)])
-}
-
-fn curve(label: &str, marks: Vec<Mark>) -> Curve {
-    let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
-    Curve::method(label).with_line(line).with_marks(marks)
 }

@@ -3,6 +3,7 @@
 use super::plane::Plane;
 use super::rays::{Standing, Standings};
 use super::seed_ray::SeedRay;
+use crate::comparison::Gain;
 use crate::report::result::{Claim, ClaimVerdict};
 
 /// The goal for the worst ray of every set, and for the geometric mean on smooth ones.
@@ -55,60 +56,47 @@ pub(super) fn summary(seed: &SeedRay, plane: &Plane, standings: &[Standings]) ->
 
 /// The goals of the hybrid as lines of the ledger.
 pub(super) fn goals(standings: &[Standings]) -> Vec<Claim> {
-    let mut claims = Vec::new();
     let hybrids = || standings.iter().filter_map(|standings| Some((standings, standings.of("hybrid")?)));
-    let claim = |id: &str, claim: String, measured: Vec<String>, holds: bool, comment: &str| Claim {
-        id: id.to_owned(),
-        claim,
-        source: "goal of this project".to_owned(),
-        measured: measured.join("; "),
-        verdict: if holds { ClaimVerdict::Holds } else { ClaimVerdict::DoesNotHold },
-        comment: comment.to_owned(),
+    let claim = |id: &str, claim: String, measured: Vec<String>, holds: bool, comment: &str| {
+        let verdict = (ClaimVerdict::of(holds), comment);
+        Claim::new((id, "goal of this project"), claim, measured.join("; "), verdict)
     };
-    claims.push(claim(
-        "H1",
-        format!("the hybrid has at least {WORST} times the efficiency of ratio tracking per look-up on the worst ray of every set"),
-        hybrids().map(|(set, row)| format!("{} {}", set.set, short(row.per_lookup.worst))).collect(),
-        hybrids().all(|(_, row)| row.per_lookup.worst >= WORST),
-        "on the rays of this report",
-    ));
-    claims.push(claim(
-        "H2",
-        "the hybrid gains at least 1e4 in the geometric mean on smooth rays".to_owned(),
-        hybrids()
-            .filter(|(set, _)| set.id == "smooth")
-            .map(|(_, row)| {
-                format!("{} [{}, {}]", short(row.per_lookup.mean), short(row.per_lookup.interval[0]), short(row.per_lookup.interval[1]))
-            })
-            .collect(),
-        hybrids().filter(|(set, _)| set.id == "smooth").all(|(_, row)| row.per_lookup.mean >= SMOOTH),
-        "finer combs gain without end on smooth rays: the number depends on how many look-ups an estimate may cost",
-    ));
-    let against = |name: &str| {
-        let rows = || standings.iter().filter_map(|set| Some((set, set.of(name)?, set.best_published()?)));
-        let measured: Vec<String> = rows()
-            .map(|(set, hybrid, best)| {
-                format!(
-                    "{} {} ({})",
-                    set.set,
-                    short(hybrid.per_lookup.mean / best.per_lookup.mean),
-                    best.name
-                )
-            })
-            .collect();
-        let holds = rows().all(|(_, hybrid, best)| hybrid.per_lookup.mean >= SHARE * best.per_lookup.mean);
-        (measured, holds)
+    let smooth = || hybrids().filter(|(set, _)| set.id == "smooth").map(|(_, row)| &row.per_lookup);
+    let gain = |gain: &Gain| {
+        format!("{} [{}, {}]", short(gain.mean), short(gain.interval[0]), short(gain.interval[1]))
     };
-    let (measured, holds) = against("hybrid");
-    claims.push(claim(
-        "H3",
-        "the hybrid is not below the geometric mean of any published estimator by more than 10 % on any set"
-            .to_owned(),
-        measured,
-        holds,
-        "ratio to the best published one, which is named",
-    ));
-    claims
+    let against: Vec<(String, f64)> = standings
+        .iter()
+        .filter_map(|set| {
+            let (hybrid, best) = (set.of("hybrid")?, set.best_published()?);
+            let ratio = hybrid.per_lookup.mean / best.per_lookup.mean;
+            Some((format!("{} {} ({})", set.set, short(ratio), best.name), ratio))
+        })
+        .collect();
+    vec![
+        claim(
+            "H1",
+            format!("the hybrid has at least {WORST} times the efficiency of ratio tracking per look-up on the worst ray of every set"),
+            hybrids().map(|(set, row)| format!("{} {}", set.set, short(row.per_lookup.worst))).collect(),
+            hybrids().all(|(_, row)| row.per_lookup.worst >= WORST),
+            "on the rays of this report",
+        ),
+        claim(
+            "H2",
+            "the hybrid gains at least 1e4 in the geometric mean on smooth rays".to_owned(),
+            smooth().map(gain).collect(),
+            smooth().all(|gain| gain.mean >= SMOOTH),
+            "finer combs gain without end on smooth rays: the number depends on how many look-ups an estimate may cost",
+        ),
+        claim(
+            "H3",
+            "the hybrid is not below the geometric mean of any published estimator by more than 10 % on any set"
+                .to_owned(),
+            against.iter().map(|(words, _)| words.clone()).collect(),
+            against.iter().all(|(_, ratio)| *ratio >= SHARE),
+            "ratio to the best published one, which is named",
+        ),
+    ]
 }
 
 fn capital(words: &str) -> String {

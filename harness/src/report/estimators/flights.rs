@@ -2,17 +2,15 @@
 
 use crate::Failure;
 use crate::field::AnyProfile;
+use crate::parallel::in_parallel;
 use crate::report::document::{Cell, Section, Table};
-use crate::report::run::Run;
+use crate::report::run::{Part, Run};
 use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock};
 use fairflight_media::{AnalyticCosine, Bounded, Constant, Counted, Extinction, OpticalThickness, Ray};
-use fairflight_sources::{Seeded, derive_seed};
+use fairflight_sources::Seeded;
 use fairflight_stats::chi_square;
-use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The part of the report, for its seeds.
-const PART: u64 = 3;
 /// Classes of equal probability among flights that collide.
 const CLASSES: usize = 4096;
 /// Flights of a batch.
@@ -24,38 +22,19 @@ pub(super) fn steps() -> u64 {
     1
 }
 
-/// What the flights came to.
-pub(super) struct Flights {
-    pub(super) section: Section,
-    pub(super) unsound: Vec<String>,
-}
-
-pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Flights, Failure> {
+pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Part, Failure> {
     let AnyProfile::AnalyticCosine(ray) = profile else {
         return Err(Failure::refused("profile: the flights are tried on eq. 21"));
     };
     let flights = run.quick_or(4_000_000, 100_000_000_u64);
-    let mut table = Table::new(
-        "flights-distances",
-        "Distances of jittered free flight on the seed ray",
-        "Against the exact law 1 − exp(−τ(s)), in 4096 classes of equal probability and the escape; Kolmogorov's distance over the borders \
-         of the classes. The false alarm of each test is 1e-7.",
-        &[
-            ("sampler", ""),
-            ("flights", "1"),
-            ("classes, pooled where they are too small", ""),
-            ("sqrt(n) · Kolmogorov's distance", "1"),
-            ("p below", "1"),
-            ("look-ups", "1"),
-        ],
-    );
+    let mut rows = Vec::new();
     let mut unsound = Vec::new();
     for (name, epsilon, flights) in [
         ("jittered, ε = 0.5", Some(0.5), flights),
         ("jittered, ε = 1", Some(1.0), flights / 10),
         ("Woodcock", None, flights / 10),
     ] {
-        let seed = derive_seed(run.seed(PART, 0), epsilon.map_or(0, f64::to_bits));
+        let seed = run.seed(format_args!("flights/{name}"));
         let sampled = match epsilon {
             Some(epsilon) => {
                 let sampler = JitteredFlight::new(epsilon)
@@ -78,24 +57,34 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Flights, Fail
         if fit.sound != Some(true) || p < ALPHA {
             unsound.push(format!("free flight, {name}: {}; Kolmogorov's p < {p:.1e}", fit.reason));
         }
-        table.rows.push(vec![
-            Cell::text(name),
-            Cell::Count(sampled.flights),
-            Cell::text(fit.reason),
-            Cell::Number(scaled),
-            Cell::Number(p),
-            Cell::Number(sampled.lookups),
-        ]);
+        rows.push((name, sampled, fit.reason, scaled, p));
     }
     run.advance();
-    let mut section = Section::new("flights", "The companion: jittered free flight");
-    section.text = vec![
-        "One uniform candidate per stratum, accepted with the probability h σ_t, then put to a survival test: the same law as Woodcock \
-         tracking, one fixed dimension per stratum, about twice the look-ups."
-            .to_owned(),
-    ];
-    section.tables = vec![table];
-    Ok(Flights { section, unsound })
+    let text = "One uniform candidate per stratum, accepted with the probability h σ_t, then put to a survival test: the same law as Woodcock \
+         tracking, one fixed dimension per stratum, about twice the look-ups.";
+    let table = Table::of(
+        [
+            "flights-distances",
+            "Distances of jittered free flight on the seed ray",
+            "Against the exact law 1 − exp(−τ(s)), in 4096 classes of equal probability and the escape; Kolmogorov's distance over the borders \
+             of the classes. The false alarm of each test is 1e-7.",
+        ],
+        rows,
+        &[
+            ("sampler", "", &|(name, ..)| Cell::text(*name)),
+            ("flights", "1", &|(_, sampled, ..)| Cell::Count(sampled.flights)),
+            ("classes, pooled where they are too small", "", &|(_, _, reason, ..)| Cell::text(reason)),
+            ("sqrt(n) · Kolmogorov's distance", "1", &|(.., scaled, _)| Cell::Number(*scaled)),
+            ("p below", "1", &|(.., p)| Cell::Number(*p)),
+            ("look-ups", "1", &|(_, sampled, ..)| Cell::Number(sampled.lookups)),
+        ],
+    );
+    let section = Section {
+        text: vec![text.to_owned()],
+        tables: vec![table],
+        ..Section::new("flights", "The companion: jittered free flight")
+    };
+    Ok(Part { section, unsound })
 }
 
 struct Sampled {
@@ -115,31 +104,23 @@ fn sample<E: for<'a> FreeFlight<SeedRay<'a>> + for<'a> FreeFlight<Counted<SeedRa
 ) -> Sampled {
     let collides = 1.0 - (-ray.optical_thickness(0.0, ray.length())).exp();
     let batches = flights.div_ceil(BATCH);
-    let counts = (0..batches)
-        .into_par_iter()
-        .map(|batch| {
-            let field = Bounded::new(ray, 1.0).expect("1 is a majorant");
-            let mut source = Seeded::new(derive_seed(seed, batch));
-            let mut counts = vec![0_u64; CLASSES + 1];
-            for _ in 0..BATCH {
-                let class = match sampler.sample(&field, &mut source).distance() {
-                    Some(s) => {
-                        let u = -(-ray.optical_thickness(0.0, s)).exp_m1() / collides;
-                        ((u * CLASSES as f64) as usize).min(CLASSES - 1)
-                    }
-                    None => CLASSES,
-                };
-                counts[class] += 1;
-            }
-            counts
-        })
-        .reduce(
-            || vec![0; CLASSES + 1],
-            |mut a, b| {
-                a.iter_mut().zip(&b).for_each(|(a, b)| *a += b);
-                a
-            },
-        );
+    let per_batch = in_parallel(batches as usize, &|batch| {
+        let field = Bounded::new(ray, 1.0).expect("1 is a majorant");
+        let mut source = Seeded::for_batch(seed, batch as u64);
+        let mut counts = vec![0_u64; CLASSES + 1];
+        for _ in 0..BATCH {
+            let class = match sampler.sample(&field, &mut source).distance() {
+                Some(s) => {
+                    let u = -(-ray.optical_thickness(0.0, s)).exp_m1() / collides;
+                    ((u * CLASSES as f64) as usize).min(CLASSES - 1)
+                }
+                None => CLASSES,
+            };
+            counts[class] += 1;
+        }
+        counts
+    });
+    let counts = (0..=CLASSES).map(|class| per_batch.iter().map(|counts| counts[class]).sum()).collect();
     const COUNTED: u64 = 1 << 18;
     let counting = Counted::new(Bounded::new(ray, 1.0).expect("1 is a majorant"));
     let mut source = Seeded::new(seed);

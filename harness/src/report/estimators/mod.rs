@@ -11,19 +11,16 @@ mod sets;
 mod spectral;
 mod variates;
 
-use crate::report::document::{Document, Options};
+use crate::Failure;
+use crate::report::document::Document;
 use crate::report::run::Run;
-use crate::{Environment, Failure};
-use std::time::Instant;
 
 /// Measures the report, on the threads of the current pool.
-pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
-    let clock = Instant::now();
-    let run = Run::new(options, environment, 1);
-    let arenas = sets::arenas(&run)?;
+pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
+    let arenas = sets::arenas(run)?;
     let parts = [
         seed_ray::steps(),
-        plane::steps(&run),
+        plane::steps(run),
         cells::steps(),
         convergence::steps(),
         flights::steps(),
@@ -31,41 +28,24 @@ pub(crate) fn document(options: &Options, environment: &Environment) -> Result<D
         variates::steps(),
     ];
     run.expect(parts.iter().sum::<u64>() + arenas.iter().map(rays::steps).sum::<u64>());
-    let seed = seed_ray::study(&run)?;
-    let plane = plane::study(&run)?;
-    let mut standings = Vec::new();
-    for (k, arena) in (0..).zip(&arenas) {
-        standings.push(rays::study(&run, arena, k)?);
-    }
-    let convergence = convergence::study(&run)?;
-    let flights = flights::study(&run, &seed_ray::ray(&run)?.profile)?;
-    let cells = cells::study(&run)?;
-    let spectral = spectral::study(&run)?;
-    let variates = variates::study(&run)?;
-    run.finish();
-    let mut document = Document::new(
-        "estimators",
-        "Estimators of transmittance: the whole family, and which to use",
-        options,
-        environment.provenance(options.seed),
-    );
-    document.summary = findings::summary(&seed, &plane, &standings);
-    document.claims = findings::goals(&standings);
-    document.unsound = seed
-        .unsound
-        .into_iter()
-        .chain(plane.unsound)
-        .chain(flights.unsound)
-        .chain(spectral.unsound)
-        .chain(variates.unsound)
-        .collect();
-    document
-        .unsound
+    let seed = seed_ray::study(run)?;
+    let plane = plane::study(run)?;
+    let standings = arenas.iter().map(|arena| rays::study(run, arena)).collect::<Result<Vec<_>, _>>()?;
+    let convergence = convergence::study(run)?;
+    let flights = flights::study(run, &seed_ray::ray(run)?.profile)?;
+    let cells = cells::study(run)?;
+    let spectral = spectral::study(run)?;
+    let variates = variates::study(run)?;
+    let summary = findings::summary(&seed, &plane, &standings);
+    let claims = findings::goals(&standings);
+    let mut unsound: Vec<String> = [seed.part.unsound, plane.unsound].concat();
+    unsound.extend([flights.unsound, spectral.unsound, variates.unsound].concat());
+    unsound
         .extend(standings.iter().flat_map(|standings| &standings.rows).filter_map(|row| row.unsound.clone()));
-    document.sections = plane.sections;
-    document.sections.insert(1, seed.section);
-    document.sections.extend(standings.into_iter().map(|standings| standings.section));
-    document.sections.extend([convergence, cells, flights.section, variates.section, spectral.section]);
-    document.seconds = clock.elapsed().as_secs_f64();
-    Ok(document)
+    let mut sections = plane.sections;
+    sections.insert(1, seed.part.section);
+    sections.extend(standings.into_iter().map(|standings| standings.section));
+    sections.extend([convergence, cells, flights.section, variates.section, spectral.section]);
+    let title = "Estimators of transmittance: the whole family, and which to use";
+    Ok(Document { summary, claims, unsound, sections, ..run.document(title) })
 }

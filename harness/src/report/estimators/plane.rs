@@ -3,15 +3,12 @@
 use crate::Failure;
 use crate::comparison::{Bout, Effort, Entrant, Facts, TestRay, entrants, facts_of, fight, pooled};
 use crate::field::{ExpressionSpec, ProfileKind};
+use crate::parallel::try_in_parallel;
 use crate::reference::Truth;
 use crate::report::document::{Axis, Cell, Content, HeatMap, Numbers, Panel, Section, Table};
 use crate::report::run::Run;
 use fairflight_media::Tolerance;
-use fairflight_sources::derive_seed;
-use rayon::prelude::*;
-
-/// The part of the report, for its seeds.
-const PART: u64 = 2;
+use fairflight_sources::named_seed;
 
 /// A profile: its name, and σ_t on a ray of length 1 up to a factor, the greatest value 1.
 struct Shape {
@@ -98,25 +95,18 @@ pub(super) fn study(run: &Run<'_>) -> Result<Plane, Failure> {
         })
         .collect();
     // Each point is a ray of its own, met by all: the pilot of a point teaches that point, with variates of its own.
-    let bouts: Result<Vec<Vec<Bout>>, Failure> = points
-        .par_iter()
-        .enumerate()
-        .map(|(i, &(shape, transmittance, tightness))| {
-            let ray = point(&SHAPES[shape], transmittance, tightness)?;
-            let seed = derive_seed(run.seed(PART, 0), i as u64);
-            let facts: Facts = facts_of(&ray, derive_seed(seed, u64::MAX));
-            players
-                .iter()
-                .enumerate()
-                .map(|(e, player)| {
-                    let bout = fight(&ray, &player.on(&ray, &facts)?, effort, derive_seed(seed, e as u64));
-                    run.advance();
-                    bout
-                })
-                .collect()
-        })
-        .collect();
-    let bouts = bouts?;
+    let bouts = try_in_parallel(points.len(), &|i| {
+        let (shape, transmittance, tightness) = points[i];
+        let ray = point(&SHAPES[shape], transmittance, tightness)?;
+        let name = SHAPES[shape].name;
+        let seed = run.seed(format_args!("plane/{name}/{transmittance:.6}/{tightness:.6}"));
+        let facts: Facts = facts_of(&ray, named_seed(seed, "facts"));
+        let bout = |player: &Entrant| {
+            run.advance();
+            fight(&ray, &player.on(&ray, &facts)?, effort, named_seed(seed, player.name))
+        };
+        players.iter().map(bout).collect::<Result<Vec<Bout>, Failure>>()
+    })?;
     Ok(results(&grid, &players, &bouts))
 }
 
@@ -125,17 +115,18 @@ fn price(bout: &Bout) -> f64 {
     bout.relative_variance.max(1e-20) * bout.lookups.max(1.0)
 }
 
-fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
-    let points = grid.points();
-    let panel = |shape: usize, of: &dyn Fn(&[Bout]) -> Option<f64>| Panel {
-        label: SHAPES[shape].name.to_owned(),
+/// A panel for each profile, of a value for each point.
+fn panels<T>(grid: &Grid, bouts: &[Vec<Bout>], of: &dyn Fn(&[Bout]) -> Option<T>) -> Vec<Panel<Option<T>>> {
+    let of_shape = |(shape, bouts): (&Shape, &[Vec<Bout>])| Panel {
+        label: shape.name.to_owned(),
         x: grid.transmittances.clone(),
         y: grid.tightnesses.clone(),
-        values: bouts[shape * points..(shape + 1) * points].iter().map(|bouts| of(bouts)).collect(),
+        values: bouts.iter().map(|bouts| of(bouts)).collect(),
     };
-    let panels = |of: &dyn Fn(&[Bout]) -> Option<f64>| {
-        (0..SHAPES.len()).map(|shape| panel(shape, of)).collect::<Vec<_>>()
-    };
+    SHAPES.iter().zip(bouts.chunks(grid.points())).map(of_shape).collect()
+}
+
+fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let x = || Axis::linear("transmittance [1]").within(0.0, 1.0);
     let y = || Axis::logarithmic("tightness of the majorant [1]");
     let best =
@@ -146,31 +137,18 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
             wins[winner].1 += 1;
         }
     }
+    let gain = |bouts: &[Bout]| best(bouts).map(|winner| price(&bouts[0]) / price(&bouts[winner]));
     let winners = Content::Names {
         names: players.iter().map(|player| player.name.to_owned()).collect(),
-        panels: (0..SHAPES.len())
-            .map(|shape| {
-                let one = panel(shape, &|_| None);
-                let values =
-                    bouts[shape * points..(shape + 1) * points].iter().map(|bouts| best(bouts)).collect();
-                Panel { label: one.label, x: one.x, y: one.y, values }
-            })
-            .collect(),
+        panels: panels(grid, bouts, &best),
         numbers: Some(Numbers {
             axis: Axis::logarithmic("gain of the winner over ratio tracking [1]"),
             isolines: vec![1.0, 10.0, 1e2, 1e4, 1e6, 1e8],
-            panels: (0..SHAPES.len())
-                .map(|shape| {
-                    panel(shape, &|bouts| best(bouts).map(|winner| price(&bouts[0]) / price(&bouts[winner])))
-                        .values
-                })
-                .collect(),
+            panels: panels(grid, bouts, &gain).into_iter().map(|panel| panel.values).collect(),
         }),
     };
     wins.sort_by_key(|&(_, cells)| std::cmp::Reverse(cells));
-    let mut winner_map =
-        HeatMap::new("plane-winners", "Who wins the canonical plane, per look-up", x(), y(), winners);
-    winner_map.caption = format!(
+    let caption = format!(
         "The estimator with the least variance times look-ups at each point, and how much it gains over ratio tracking (lines). Tightness is \
          the greatest extinction over the majorant. On const, cos and the lines combs have no variance but rounding: there the cheapest of them wins. {} of \
          {} points are won by {}.",
@@ -178,18 +156,21 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
         bouts.len(),
         wins[0].0
     );
-    let mut overview = Section::new("plane", "The canonical plane: who wins");
-    overview.text = vec![
-        "georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
-         the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know eight pilots of the same ray, \
-         from variates of its own."
-            .to_owned(),
-        "Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned(),
-    ];
-    overview.heat_maps = vec![winner_map];
+    let title = "Who wins the canonical plane, per look-up";
+    let winners = HeatMap { caption, ..HeatMap::new("plane-winners", title, x(), y(), winners) };
     let (table, unsound) = summary(players, bouts);
-    overview.tables = vec![table];
-
+    let overview = Section {
+        text: vec![
+            "georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
+             the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know eight pilots of the same ray, \
+             from variates of its own."
+                .to_owned(),
+            "Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned(),
+        ],
+        heat_maps: vec![winners],
+        tables: vec![table],
+        ..Section::new("plane", "The canonical plane: who wins")
+    };
     let mut prices =
         Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator");
     let mut quantities =
@@ -197,7 +178,7 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     for (e, player) in players.iter().enumerate() {
         let id = player.name.to_lowercase().replace(", ", "-").replace([' ', ','], "-");
         let map = |quantity: &str, title: &str, isolines: Vec<f64>, of: &dyn Fn(&Bout) -> f64| {
-            let panels = panels(&|bouts| Some(of(&bouts[e])).filter(|value| *value > 0.0));
+            let panels = panels(grid, bouts, &|bouts| Some(of(&bouts[e])).filter(|value| *value > 0.0));
             let content = Content::Values { colours: Axis::logarithmic(title), isolines, panels };
             HeatMap::new(
                 &format!("plane-{quantity}-{id}"),
@@ -224,42 +205,33 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
 
 /// Each estimator over the whole plane: points won, the middle of its gains, and whether its means are right.
 fn summary(players: &[Entrant], bouts: &[Vec<Bout>]) -> (Table, Vec<String>) {
-    let mut table = Table::new(
-        "plane-summary",
-        "The plane as a whole",
-        "Gains per look-up over ratio tracking at the same point; the mean over all points whose law is mild enough, with its standard error.",
-        &[
-            ("estimator", ""),
-            ("points won", "1"),
-            ("least gain", "1"),
-            ("median gain", "1"),
-            ("greatest gain", "1"),
-            ("z of all means", "1"),
-            ("points in z", "1"),
-        ],
-    );
-    let mut unsound = Vec::new();
-    for (e, player) in players.iter().enumerate() {
+    let row = |(e, player): (usize, &Entrant)| {
         let mut gains: Vec<f64> = bouts.iter().map(|bouts| price(&bouts[0]) / price(&bouts[e])).collect();
         gains.sort_unstable_by(f64::total_cmp);
         let won =
             bouts.iter().filter(|bouts| bouts.iter().all(|other| price(other) >= price(&bouts[e]))).count();
-        let pooled = pooled(bouts.iter().map(|bouts| &bouts[e]));
-        if !pooled.is_sound() {
-            unsound.push(format!(
-                "{} on the canonical plane: means are off by {:.1} standard errors",
-                player.name, pooled.z
-            ));
-        }
-        table.rows.push(vec![
-            Cell::text(player.name),
-            Cell::Count(won as u64),
-            Cell::Number(gains[0]),
-            Cell::Number(gains[gains.len() / 2]),
-            Cell::Number(gains[gains.len() - 1]),
-            Cell::maybe((pooled.bouts > 0).then_some(pooled.z)),
-            Cell::Count(pooled.bouts as u64),
-        ]);
-    }
-    (table, unsound)
+        (player.name, gains, won, pooled(bouts.iter().map(|bouts| &bouts[e])))
+    };
+    let rows: Vec<_> = players.iter().enumerate().map(row).collect();
+    let unsound = rows.iter().filter(|(.., pooled)| !pooled.is_sound()).map(|(name, .., pooled)| {
+        format!("{name} on the canonical plane: means are off by {:.1} standard errors", pooled.z)
+    });
+    let table = Table::of(
+        [
+            "plane-summary",
+            "The plane as a whole",
+            "Gains per look-up over ratio tracking at the same point; the mean over all points whose law is mild enough, with its standard error.",
+        ],
+        &rows,
+        &[
+            ("estimator", "", &|(name, ..)| Cell::text(*name)),
+            ("points won", "1", &|(_, _, won, _)| Cell::Count(*won as u64)),
+            ("least gain", "1", &|(_, gains, ..)| Cell::Number(gains[0])),
+            ("median gain", "1", &|(_, gains, ..)| Cell::Number(gains[gains.len() / 2])),
+            ("greatest gain", "1", &|(_, gains, ..)| Cell::Number(gains[gains.len() - 1])),
+            ("z of all means", "1", &|(.., pooled)| Cell::maybe((pooled.bouts > 0).then_some(pooled.z))),
+            ("points in z", "1", &|(.., pooled)| Cell::Count(pooled.bouts as u64)),
+        ],
+    );
+    (table, unsound.collect())
 }

@@ -4,10 +4,9 @@ use super::sets::Arena;
 use crate::Failure;
 use crate::comparison::{Bout, Contest, Entrant, Gain, Unit, contest, entrants, gain, pooled};
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
+use crate::report::measured::Measured;
 use crate::report::run::Run;
-
-/// The part of the report, for its seeds.
-const PART: u64 = 20;
+use fairflight_sources::named_seed;
 
 /// What an estimator did on a set.
 pub(super) struct Standing {
@@ -44,13 +43,13 @@ pub(super) fn steps(arena: &Arena) -> u64 {
     (entrants().len() * arena.set.rays.len()) as u64
 }
 
-pub(super) fn study(run: &Run<'_>, arena: &Arena, k: u64) -> Result<Standings, Failure> {
-    let seed = run.seed(PART, k);
+pub(super) fn study(run: &Run<'_>, arena: &Arena) -> Result<Standings, Failure> {
+    let seed = run.seed(format_args!("rays/{}", arena.id));
     let taking_part: Vec<Entrant> = entrants().into_iter().filter(|entrant| can(entrant, arena)).collect();
     let contest = contest(&arena.set, taking_part, arena.effort, seed, &|| run.advance())?;
     let baseline = contest.bouts[0].clone();
     let standing = |(entrant, bouts): (&Entrant, &Vec<Bout>)| {
-        let of = |unit| gain(bouts, &baseline, unit, seed);
+        let of = |unit| gain(bouts, &baseline, unit, named_seed(seed, "bootstrap"));
         Some(Standing {
             name: entrant.name,
             published: entrant.published,
@@ -87,99 +86,84 @@ fn unsound(name: &str, set: &str, bouts: &[Bout]) -> Option<String> {
 }
 
 fn section(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Section {
-    let mut section = Section::new(
-        &format!("rays-{}", arena.id),
-        &format!("{} random rays: {}", arena.set.rays.len(), arena.set.name),
+    let effort = arena.effort;
+    let text = format!(
+        "Gain is variance times cost of ratio tracking over that of the estimator, on the same ray: its geometric mean over rays, with an \
+         interval over the choice of rays, and its least value. Variances are {} on {} samples per ray and estimator. The pilots of the \
+         hybrid and of tuned roulettes, {:.0} look-ups on each earlier ray, are not charged; nor is the finding of cells.",
+        if effort.closed { "closed forms where there are any, else measured" } else { "measured" },
+        effort.samples,
+        contest.pilot_lookups,
     );
-    section.text = vec![
-        arena.description.clone(),
-        format!(
-            "Gain is variance times cost of ratio tracking over that of the estimator, on the same ray: its geometric mean over rays, with an \
-             interval over the choice of rays, and its least value. Variances are {} on {} samples per ray and estimator. The pilots of the \
-             hybrid and of tuned roulettes, {:.0} look-ups on each earlier ray, are not charged; nor is the finding of cells.",
-            if arena.effort.closed { "closed forms where there are any, else measured" } else { "measured" },
-            arena.effort.samples,
-            contest.pilot_lookups,
-        ),
-    ];
-    section.charts = vec![chart(arena, rows)];
-    section.tables = vec![table(arena, contest, rows)];
-    section
+    Section {
+        text: vec![arena.description.clone(), text],
+        charts: vec![chart(arena, rows)],
+        tables: vec![table(arena, contest, rows)],
+        ..Section::new(
+            &format!("rays-{}", arena.id),
+            &format!("{} random rays: {}", arena.set.rays.len(), arena.set.name),
+        )
+    }
 }
 
-/// A value with its interval, if it has one.
-type Shown = (f64, Option<[f64; 2]>);
+/// A gain with its interval.
+fn measured(gain: &Gain) -> Measured {
+    Measured { value: gain.mean, interval: gain.interval }
+}
 
 fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
-    let mut chart = Chart::new(
-        &format!("rays-{}-gain", arena.id),
-        &format!("Gain over ratio tracking: {}", arena.set.name),
-        Axis::linear("estimator, in the order of the table"),
-        Axis::logarithmic("gain [1]"),
-    );
-    chart.caption =
-        "Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking."
-            .to_owned();
-    let marks = |of: &dyn Fn(&Standing) -> Shown| {
-        rows.iter()
-            .enumerate()
-            .map(|(i, row)| {
-                let (value, interval) = of(row);
-                let x = (i + 1) as f64;
-                interval.map_or_else(|| Mark::at(x, value), |interval| Mark::measured(x, value, interval))
-            })
-            .collect::<Vec<_>>()
+    let curve = |label: &str, mark: &dyn Fn(f64, &Standing) -> Mark| {
+        Curve::method(label).with_marks((1_u32..).zip(rows).map(|(i, row)| mark(f64::from(i), row)))
     };
-    chart.curves = vec![
-        Curve::method("per look-up")
-            .with_marks(marks(&|row| (row.per_lookup.mean, Some(row.per_lookup.interval)))),
-        Curve::method("per second")
-            .with_marks(marks(&|row| (row.per_second.mean, Some(row.per_second.interval)))),
-        Curve::method("worst ray, per look-up").with_marks(marks(&|row| (row.per_lookup.worst, None))),
-        Curve::reference("ratio tracking", [(0.0, 1.0), (rows.len() as f64 + 1.0, 1.0)]),
-    ];
-    chart
+    Chart {
+        caption:
+            "Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking."
+                .to_owned(),
+        curves: vec![
+            curve("per look-up", &|x, row| measured(&row.per_lookup).mark(x)),
+            curve("per second", &|x, row| measured(&row.per_second).mark(x)),
+            curve("worst ray, per look-up", &|x, row| Mark::at(x, row.per_lookup.worst)),
+            Curve::reference("ratio tracking", [(0.0, 1.0), (rows.len() as f64 + 1.0, 1.0)]),
+        ],
+        ..Chart::new(
+            &format!("rays-{}-gain", arena.id),
+            &format!("Gain over ratio tracking: {}", arena.set.name),
+            Axis::linear("estimator, in the order of the table"),
+            Axis::logarithmic("gain [1]"),
+        )
+    }
 }
 
 fn table(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Table {
-    let mut table = Table::new(
-        &format!("gains-{}", arena.id),
-        &format!("Estimators on {} rays", arena.set.name),
-        "Negative share, greatest estimate and kurtosis are those of the worst ray. Ours: not published before, as far as we know. Telescoping at level ratio 0.9 on noise has a closed form that does not converge: what is measured there is what happened to be met.",
-        &[
-            ("number", ""),
-            ("estimator", ""),
-            ("ours", ""),
-            ("look-ups", "1"),
-            ("gain per look-up", "1"),
-            ("worst", "1"),
-            ("gain per second", "1"),
-            ("worst", "1"),
-            ("time", "ns"),
-            ("negative", "1"),
-            ("maximum / T", "1"),
-            ("excess kurtosis", "1"),
-            ("mean / T", "1"),
+    let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NEG_INFINITY, f64::max);
+    Table::of(
+        [
+            &format!("gains-{}", arena.id),
+            &format!("Estimators on {} rays", arena.set.name),
+            "Negative share, greatest estimate and kurtosis are those of the worst ray. Ours: not published before, as far as we know. Telescoping at level ratio 0.9 on noise has a closed form that does not converge: what is measured there is what happened to be met.",
         ],
-    );
-    for (i, (row, bouts)) in rows.iter().zip(&contest.bouts).enumerate() {
-        let most = |of: &dyn Fn(&Bout) -> f64| bouts.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-        let kurtosis = bouts.iter().filter_map(|bout| bout.kurtosis).fold(f64::NEG_INFINITY, f64::max);
-        table.rows.push(vec![
-            Cell::Count(i as u64 + 1),
-            Cell::text(row.name),
-            Cell::Flag(!row.published),
-            Cell::Number(row.lookups),
-            Cell::measured(row.per_lookup.mean, row.per_lookup.interval),
-            Cell::Number(row.per_lookup.worst),
-            Cell::measured(row.per_second.mean, row.per_second.interval),
-            Cell::Number(row.per_second.worst),
-            Cell::Number(1e9 * mean(bouts, |bout| bout.seconds)),
-            Cell::Number(most(&|bout| bout.negative)),
-            Cell::Number(most(&|bout| bout.maximum)),
-            Cell::maybe(kurtosis.is_finite().then_some(kurtosis)),
-            Cell::Number(mean(bouts, |bout| bout.relative_mean)),
-        ]);
-    }
-    table
+        (1..).zip(rows).zip(&contest.bouts).map(|((number, row), bouts)| (number, row, bouts)),
+        &[
+            ("number", "", &|(number, ..)| Cell::Count(*number)),
+            ("estimator", "", &|(_, row, _)| Cell::text(row.name)),
+            ("ours", "", &|(_, row, _)| Cell::Flag(!row.published)),
+            ("look-ups", "1", &|(_, row, _)| Cell::Number(row.lookups)),
+            ("gain per look-up", "1", &|(_, row, _)| measured(&row.per_lookup).cell()),
+            ("worst", "1", &|(_, row, _)| Cell::Number(row.per_lookup.worst)),
+            ("gain per second", "1", &|(_, row, _)| measured(&row.per_second).cell()),
+            ("worst", "1", &|(_, row, _)| Cell::Number(row.per_second.worst)),
+            ("time", "ns", &|(.., bouts)| Cell::Number(1e9 * mean(bouts, |bout| bout.seconds))),
+            ("negative", "1", &|(.., bouts)| {
+                Cell::Number(greatest(&mut bouts.iter().map(|bout| bout.negative)))
+            }),
+            ("maximum / T", "1", &|(.., bouts)| {
+                Cell::Number(greatest(&mut bouts.iter().map(|bout| bout.maximum)))
+            }),
+            ("excess kurtosis", "1", &|(.., bouts)| {
+                let kurtosis = greatest(&mut bouts.iter().filter_map(|bout| bout.kurtosis));
+                Cell::maybe(kurtosis.is_finite().then_some(kurtosis))
+            }),
+            ("mean / T", "1", &|(.., bouts)| Cell::Number(mean(bouts, |bout| bout.relative_mean))),
+        ],
+    )
 }

@@ -11,14 +11,12 @@ use crate::field::AnyProfile;
 use crate::field::{AnalyticCosineSpec, MediumKind};
 use crate::reference::Truth;
 use crate::report::document::{Cell, Section, Table};
-use crate::report::run::Run;
+use crate::report::measured::Measured;
+use crate::report::run::{Part, Run};
 use fairflight_media::Tolerance;
-use fairflight_sources::derive_seed;
 use fairflight_transmittance::{CombShape, PSeriesVersion, Roulette};
 use glam::DVec3;
 
-/// The part of the report, for its seeds.
-const PART: u64 = 1;
 /// The length of the ray.
 const LENGTH: f64 = 20.0;
 /// Cells of the grid estimators.
@@ -45,11 +43,10 @@ struct Row {
 
 /// What the seed ray came to.
 pub(super) struct SeedRay {
-    pub(super) section: Section,
+    pub(super) part: Part,
     /// Rows, and those of them that agree with the study.
     pub(super) compared: usize,
     pub(super) reproduced: usize,
-    pub(super) unsound: Vec<String>,
 }
 
 /// The ray through the centre of szirmay-kalos-2017 eq. 21.
@@ -76,9 +73,9 @@ pub(super) fn study(run: &Run<'_>) -> Result<SeedRay, Failure> {
     let rows = rows(&ray)?;
     let bouts: Result<Vec<Bout>, Failure> = rows
         .iter()
-        .enumerate()
-        .map(|(i, row)| {
-            let bout = fight(&ray, &row.estimator, effort, derive_seed(run.seed(PART, 0), i as u64));
+        .map(|row| {
+            let seed = run.seed(format_args!("seed-ray/{}", row.name));
+            let bout = fight(&ray, &row.estimator, effort, seed);
             run.advance();
             bout
         })
@@ -86,79 +83,55 @@ pub(super) fn study(run: &Run<'_>) -> Result<SeedRay, Failure> {
     let bouts = bouts?;
     let price = |bout: &Bout| bout.relative_variance * bout.lookups;
     let baseline = price(&bouts[1]);
-    let mut table = Table::new(
-        "seed-ray",
-        "The seed ray",
-        "szirmay-kalos-2017 eq. 21 along z from the origin, length 20, optical thickness 3.41568, T = 0.0328539, majorant 1. The variance is the \
-         closed form where there is one, measured where not; the study's figures are those of a numerical study of one million samples (250 \
-         thousand for some). They agree where they differ by no more than the rounding of the printed digits and four standard errors of the \
-         study.",
+    let rows: Vec<(Row, Bout)> = rows.into_iter().zip(bouts).collect();
+    let agreement = |(row, bout): &(Row, Bout)| row.figure.as_ref().map(|figure| agrees(figure, bout));
+    let compared = rows.iter().filter_map(agreement).count();
+    let reproduced = rows.iter().filter_map(agreement).filter(|agrees| *agrees).count();
+    let unsound = rows.iter().filter_map(|(row, bout)| {
+        let z = (bout.relative_mean - 1.0) / bout.mean_error;
+        let is_off = z.abs() > 6.0 && !row.name.contains("biased") && bout.mean_error > 1e-13;
+        is_off.then(|| format!("{} on the seed ray: its mean is off by {z:.1} standard errors", row.name))
+    });
+    let unsound = unsound.collect();
+    let figure = |row: &Row, of: fn(&Figure) -> f64| Cell::maybe(row.figure.as_ref().map(of));
+    let variance = |bout: &Bout, value: f64| Measured::normal(value, bout.variance_error).cell();
+    let table = Table::of(
+        [
+            "seed-ray",
+            "The seed ray",
+            "szirmay-kalos-2017 eq. 21 along z from the origin, length 20, optical thickness 3.41568, T = 0.0328539, majorant 1. The variance is the \
+             closed form where there is one, measured where not; the study's figures are those of a numerical study of one million samples (250 \
+             thousand for some). They agree where they differ by no more than the rounding of the printed digits and four standard errors of the \
+             study.",
+        ],
+        &rows,
         &[
-            ("estimator", ""),
-            ("ours", ""),
-            ("look-ups", "1"),
-            ("study", "1"),
-            ("Var/T²", "1"),
-            ("measured", "1"),
-            ("study", "1"),
-            ("agrees", ""),
-            ("Var · look-ups/T²", "1"),
-            ("gain", "1"),
-            ("mean / T", "1"),
-            ("negative", "1"),
-            ("maximum / T", "1"),
-            ("time", "ns"),
-            ("remark", ""),
+            ("estimator", "", &|(row, _)| Cell::text(row.name)),
+            ("ours", "", &|(row, _)| Cell::Flag(row.ours)),
+            ("look-ups", "1", &|(_, bout)| Cell::Number(bout.lookups)),
+            ("study", "1", &|(row, _)| figure(row, |figure| figure.lookups)),
+            ("Var/T²", "1", &|(_, bout)| match bout.is_closed {
+                true => Cell::Number(bout.relative_variance),
+                false => variance(bout, bout.relative_variance),
+            }),
+            ("measured", "1", &|(_, bout)| variance(bout, bout.measured_variance)),
+            ("study", "1", &|(row, _)| figure(row, |figure| figure.variance)),
+            ("agrees", "", &|row| agreement(row).map_or(Cell::Empty, Cell::Flag)),
+            ("Var · look-ups/T²", "1", &|(_, bout)| Cell::Number(price(bout))),
+            ("gain", "1", &|(_, bout)| Cell::Number(baseline / price(bout))),
+            ("mean / T", "1", &|(_, bout)| Measured::normal(bout.relative_mean, bout.mean_error).cell()),
+            ("negative", "1", &|(_, bout)| Cell::Number(bout.negative)),
+            ("maximum / T", "1", &|(_, bout)| Cell::Number(bout.maximum)),
+            ("time", "ns", &|(_, bout)| Cell::Number(1e9 * bout.seconds)),
+            ("remark", "", &|(row, _)| Cell::text(row.remark)),
         ],
     );
-    let (mut compared, mut reproduced, mut unsound) = (0, 0, Vec::new());
-    for (row, bout) in rows.iter().zip(&bouts) {
-        let agrees = row.figure.as_ref().map(|figure| agrees(figure, bout));
-        if let Some(agrees) = agrees {
-            compared += 1;
-            reproduced += usize::from(agrees);
-        }
-        let error = 2.0 * bout.mean_error;
-        let z = (bout.relative_mean - 1.0) / bout.mean_error;
-        if z.abs() > 6.0 && !row.name.contains("biased") && bout.mean_error > 1e-13 {
-            unsound.push(format!("{} on the seed ray: its mean is off by {z:.1} standard errors", row.name));
-        }
-        table.rows.push(vec![
-            Cell::text(row.name),
-            Cell::Flag(row.ours),
-            Cell::Number(bout.lookups),
-            Cell::maybe(row.figure.as_ref().map(|figure| figure.lookups)),
-            if bout.is_closed {
-                Cell::Number(bout.relative_variance)
-            } else {
-                Cell::measured(
-                    bout.relative_variance,
-                    around(bout.relative_variance, 1.96 * bout.variance_error),
-                )
-            },
-            Cell::measured(
-                bout.measured_variance,
-                around(bout.measured_variance, 1.96 * bout.variance_error),
-            ),
-            Cell::maybe(row.figure.as_ref().map(|figure| figure.variance)),
-            agrees.map_or(Cell::Empty, Cell::Flag),
-            Cell::Number(price(bout)),
-            Cell::Number(baseline / price(bout)),
-            Cell::measured(bout.relative_mean, [bout.relative_mean - error, bout.relative_mean + error]),
-            Cell::Number(bout.negative),
-            Cell::Number(bout.maximum),
-            Cell::Number(1e9 * bout.seconds),
-            Cell::text(row.remark),
-        ]);
-    }
-    let mut section = Section::new("seed", "The seed ray: all estimators, and a study repeated");
-    section.text = vec![format!("{reproduced} of {compared} variances of the study are reproduced.")];
-    section.tables = vec![table];
-    Ok(SeedRay { section, compared, reproduced, unsound })
-}
-
-fn around(value: f64, error: f64) -> [f64; 2] {
-    [value - error, value + error]
+    let section = Section {
+        text: vec![format!("{reproduced} of {compared} variances of the study are reproduced.")],
+        tables: vec![table],
+        ..Section::new("seed", "The seed ray: all estimators, and a study repeated")
+    };
+    Ok(SeedRay { part: Part { section, unsound }, compared, reproduced })
 }
 
 /// Whether a figure of the study can be ours: its rounding, four standard errors of its sample, and four of ours where ours is measured.

@@ -14,8 +14,6 @@ use glam::DVec3;
 const RAYS: usize = 60;
 /// Rays are kept from this share of the medium's extent on.
 const LEAST: f64 = 0.2;
-/// The part of the report, for its seeds.
-const PART: u64 = 10;
 
 /// A set with how thoroughly it is measured.
 pub(super) struct Arena {
@@ -45,13 +43,27 @@ fn effort(run: &Run<'_>, samples: u64, closed: bool) -> Effort {
     Effort { samples, counted: samples.min(2048), closed }
 }
 
+/// Random chords of a medium, below `majorant` or else its upper bound.
+fn of_chords(
+    run: &Run<'_>,
+    (id, name): (&str, &str),
+    medium: &dyn MediumKind,
+    majorant: Option<f64>,
+    tolerance: f64,
+) -> Result<RaySet, Failure> {
+    let (medium, bounds) = medium.build(&run.media, "medium")?;
+    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(format_args!("sets/{id}")))?;
+    let majorant = majorant
+        .or_else(|| medium.upper_bound())
+        .ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;
+    RaySet::of(name, profiles, majorant, Tolerance::to(tolerance))
+}
+
 fn smooth(run: &Run<'_>) -> Result<Arena, Failure> {
-    let spec = AnalyticCosineSpec { scale: 1.0, bounds: None };
-    let (medium, bounds) = spec.build(&run.media, "medium")?;
-    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 0))?;
+    let medium = AnalyticCosineSpec { scale: 1.0, bounds: None };
     Ok(Arena {
         id: "smooth",
-        set: RaySet::of("smooth", profiles, 1.0, Tolerance::to(1e-11))?,
+        set: of_chords(run, ("smooth", "smooth"), &medium, Some(1.0), 1e-11)?,
         effort: effort(run, 16_384, true),
         description: "Smooth: random chords of szirmay-kalos-2017 eq. 21, at least 4 long, majorant 1."
             .to_owned(),
@@ -79,7 +91,7 @@ pub(super) fn rough_profile(source: &mut Seeded) -> Result<PiecewiseConstant, Fa
 }
 
 fn rough(run: &Run<'_>) -> Result<Arena, Failure> {
-    let mut source = Seeded::new(run.seed(PART, 1));
+    let mut source = Seeded::new(run.seed("sets/rough"));
     let profiles: Result<Vec<AnyProfile>, Failure> =
         (0..rays(run)).map(|_| Ok(AnyProfile::PiecewiseConstant(rough_profile(&mut source)?))).collect();
     Ok(Arena {
@@ -94,15 +106,12 @@ fn rough(run: &Run<'_>) -> Result<Arena, Failure> {
 
 fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
     let parameters = PerlinParameters { offset: 0.25, scale: 0.75, ..PerlinParameters::default() };
-    let radius = 10.0;
-    let bounds = Bounds::sphere(DVec3::ZERO, radius)
+    let bounds = Bounds::sphere(DVec3::ZERO, 10.0)
         .map_err(|error| Failure::refused(format!("medium.bounds: {error}")))?;
-    let spec = PerlinSpec::of(parameters, bounds);
-    let (medium, bounds) = spec.build(&run.media, "medium")?;
-    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 2))?;
+    let medium = PerlinSpec::of(parameters, bounds);
     Ok(Arena {
         id: "perlin",
-        set: RaySet::of("Perlin", profiles, 1.0, Tolerance::to(1e-7))?,
+        set: of_chords(run, ("perlin", "Perlin"), &medium, Some(1.0), 1e-7)?,
         effort: effort(run, 4096, false),
         description: "Perlin: random chords of a sphere of radius 10 in the noise of twelve octaves of the standard report, majorant 1."
             .to_owned(),
@@ -110,24 +119,16 @@ fn perlin(run: &Run<'_>) -> Result<Arena, Failure> {
 }
 
 fn vdb(run: &Run<'_>, volume: &Volume) -> Result<Arena, Failure> {
-    let (medium, bounds) = volume.medium().kind().build(&run.media, "medium")?;
-    let profiles = chords(&medium, &bounds, rays(run), LEAST, run.seed(PART, 3))?;
-    let majorant =
-        medium.upper_bound().ok_or_else(|| Failure::refused("medium: the volume declares no majorant"))?;
-    let set = RaySet::of("vdb", profiles, majorant, Tolerance::to(1e-11))?;
+    let set = of_chords(run, ("vdb", "vdb"), volume.medium().kind(), None, 1e-11)?;
+    let majorant = set.rays.first().map_or(0.0, |ray| ray.majorant);
     let effort = effort(run, 8192, false);
     let each = (effort.samples + effort.counted) as f64;
     let lookups = each * (set.depth() * entrants().len() as f64 + set.pairs());
     let because =
         format!("{each} estimates of each kind on {} rays, in the majorant {majorant:e}", set.rays.len());
     run.options.budget.check("medium", lookups, &because)?;
-    Ok(Arena {
-        id: "vdb",
-        set,
-        effort,
-        description: format!(
-            "Volume: random chords of the box of {}, majorant {majorant:.4}, the greatest voxel.",
-            volume.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-        ),
-    })
+    let file = volume.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let description =
+        format!("Volume: random chords of the box of {file}, majorant {majorant:.4}, the greatest voxel.");
+    Ok(Arena { id: "vdb", set, effort, description })
 }

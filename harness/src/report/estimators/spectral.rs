@@ -3,8 +3,10 @@
 use super::seed_ray;
 use crate::Failure;
 use crate::field::AnyProfile;
+use crate::parallel::in_parallel;
 use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
-use crate::report::run::Run;
+use crate::report::measured::Measured;
+use crate::report::run::{Part, Run};
 use fairflight_freeflight::spectral::{
     AverageScheme, HeroWavelength, MaxScheme, SeparateSolve, SharedDistance, SpectralFlight,
     SpectralFreeFlight, SpectralTracking,
@@ -13,13 +15,11 @@ use fairflight_media::{
     AnalyticCosine, Constant, Extinction, OpticalThickness, Ray, Scaled, SpectralExtinction,
     SpectralOpticalThickness,
 };
-use fairflight_sources::{Seeded, derive_seed};
-use rayon::prelude::*;
+use fairflight_sources::{Seeded, named_seed};
+use fairflight_stats::Moments;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The part of the report, for its seeds.
-const PART: u64 = 7;
 /// Extinctions of the second wavelength over the first.
 const RATIOS: [f64; 8] = [1.0, 1.25, 1.5, 1.75, 1.9, 2.1, 3.0, 4.0];
 /// Flights of a batch.
@@ -33,18 +33,20 @@ pub(super) fn steps() -> u64 {
 /// judged.
 const BASELINE: &str = "the densest one's distances";
 
-/// What flights of N wavelengths scored.
+/// Scores of flights of N wavelengths: their weights over T where they escape, over 1 − T where they collide.
 struct Scored<const N: usize> {
-    /// Variance of the escaped weight over T², per wavelength.
-    escaped: [f64; N],
-    /// Variance of the collided weight over (1 − T)².
-    collided: [f64; N],
-    /// Means over T, and over 1 − T.
-    means: [[f64; N]; 2],
-    /// Standard errors of those.
-    errors: [[f64; N]; 2],
-    greatest: f64,
+    escaped: [Moments; N],
+    collided: [Moments; N],
     lookups: f64,
+}
+
+impl<const N: usize> Scored<N> {
+    /// The greatest weight, in units of what it estimates.
+    fn greatest(&self) -> f64 {
+        let scores = self.escaped.iter().chain(&self.collided);
+        let ends = scores.flat_map(|scores| [scores.minimum(), scores.maximum()]).flatten();
+        ends.map(f64::abs).fold(0.0, f64::max)
+    }
 }
 
 /// A spectrum whose evaluations are counted: all wavelengths at once are one look-up.
@@ -81,48 +83,35 @@ where
     E: for<'a> SpectralFreeFlight<&'a F, N> + for<'a> SpectralFreeFlight<CountedSpectrum<'a, F>, N> + Sync,
 {
     let batches = flights.div_ceil(BATCH);
-    // Σ w, Σ w² of escaped and of collided weights.
-    let sums = (0..batches)
-        .into_par_iter()
-        .map(|batch| {
-            let mut source = Seeded::new(derive_seed(seed, batch));
-            let (mut sums, mut greatest) = ([[0.0; N]; 4], 0.0_f64);
-            for _ in 0..BATCH {
-                let (row, weights) = match sampler.sample(&field, &mut source) {
-                    SpectralFlight::Escaped { weights } => (0, weights),
-                    SpectralFlight::Collided { weights, .. } => (2, weights),
-                };
-                for (l, weight) in weights.into_iter().enumerate() {
-                    sums[row][l] += weight;
-                    sums[row + 1][l] += weight * weight;
-                    greatest = greatest.max(weight.abs());
-                }
-            }
-            (sums, greatest)
-        })
-        .collect::<Vec<_>>();
-    let n = (batches * BATCH) as f64;
-    let total = |row: usize, l: usize| sums.iter().map(|(sums, _)| sums[row][l]).sum::<f64>() / n;
+    let per_batch = in_parallel(batches as usize, &|batch| {
+        let mut source = Seeded::for_batch(seed, batch as u64);
+        let mut scores = [[Moments::new(); N]; 2];
+        for _ in 0..BATCH {
+            let (end, weights) = match sampler.sample(&field, &mut source) {
+                SpectralFlight::Escaped { weights } => (0, weights),
+                SpectralFlight::Collided { weights, .. } => (1, weights),
+            };
+            scores[end].iter_mut().zip(weights).for_each(|(scores, weight)| scores.push(weight));
+        }
+        scores
+    });
     let lookups = AtomicU64::new(0);
     let counted = CountedSpectrum { field, lookups: &lookups };
     let mut source = Seeded::new(seed);
     for _ in 0..BATCH {
         sampler.sample(&counted, &mut source);
     }
-    let exact = |row: usize, l: usize| {
+    let scores = |end: usize, l: usize| {
+        let mut scores = Moments::new();
+        per_batch.iter().for_each(|batch| scores.merge(&batch[end][l]));
         let transmittance = (-thickness[l]).exp();
-        if row == 0 { transmittance } else { 1.0 - transmittance }
-    };
-    let mean = |row: usize, l: usize| total(2 * row, l) / exact(row, l);
-    let variance = |row: usize, l: usize| {
-        (total(2 * row + 1, l) - total(2 * row, l) * total(2 * row, l)) / (exact(row, l) * exact(row, l))
+        let exact = if end == 0 { transmittance } else { 1.0 - transmittance };
+        // Flights that end otherwise score 0.
+        scores.with_zeros(batches * BATCH - scores.count()).scaled(1.0 / exact)
     };
     Scored {
-        escaped: std::array::from_fn(|l| variance(0, l)),
-        collided: std::array::from_fn(|l| variance(1, l)),
-        means: [0, 1].map(|row| std::array::from_fn(|l| mean(row, l))),
-        errors: [0, 1].map(|row| std::array::from_fn(|l| (variance(row, l) / n).sqrt())),
-        greatest: sums.iter().fold(0.0, |greatest: f64, (_, other)| greatest.max(*other)),
+        escaped: std::array::from_fn(|l| scores(0, l)),
+        collided: std::array::from_fn(|l| scores(1, l)),
         lookups: lookups.into_inner() as f64 / BATCH as f64,
     }
 }
@@ -141,54 +130,54 @@ fn all<F: SpectralOpticalThickness<N> + Sync, const N: usize>(
         coefficients.iter().map(|&sigma| constant(sigma)).collect();
     let majorants: [Constant; N] =
         majorants?.try_into().map_err(|_| Failure::refused("spectral: a majorant per wavelength"))?;
-    let go = |k: u64| (flights.0, derive_seed(flights.1, k));
+    let go = |name: &str| (flights.0, named_seed(flights.1, name));
     Ok(vec![
-        ("separate solves", score(field, thickness, &SeparateSolve::new(majorants), go(0))),
+        ("separate solves", score(field, thickness, &SeparateSolve::new(majorants), go("separate solves"))),
         (
             "spectral tracking, max scheme",
-            score(field, thickness, &SpectralTracking::new(MaxScheme, constant(greatest)?), go(1)),
+            score(field, thickness, &SpectralTracking::new(MaxScheme, constant(greatest)?), go("max scheme")),
         ),
         (
             "spectral tracking, average scheme",
-            score(field, thickness, &SpectralTracking::new(AverageScheme, constant(greatest)?), go(2)),
+            score(
+                field,
+                thickness,
+                &SpectralTracking::new(AverageScheme, constant(greatest)?),
+                go("average scheme"),
+            ),
         ),
-        ("hero wavelength", score(field, thickness, &HeroWavelength::new(constant(greatest)?), go(3))),
+        (
+            "hero wavelength",
+            score(field, thickness, &HeroWavelength::new(constant(greatest)?), go("hero wavelength")),
+        ),
         (
             BASELINE,
             score(
                 field,
                 thickness,
                 &SharedDistance::new(constant(thickness.into_iter().fold(0.0, f64::max) / field.length())?),
-                go(4),
+                go(BASELINE),
             ),
         ),
     ])
 }
 
-/// What came of the wavelengths.
-pub(super) struct Spectral {
-    pub(super) section: Section,
-    pub(super) unsound: Vec<String>,
-}
-
-pub(super) fn study(run: &Run<'_>) -> Result<Spectral, Failure> {
+pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
     let AnyProfile::AnalyticCosine(ray) = seed_ray::ray(run)?.profile else {
         return Err(Failure::refused("profile: the seed ray is one of eq. 21"));
     };
-    let mut section = Section::new("spectral", "Several wavelengths at once");
-    section.text = vec![
-        "One flight counts for all wavelengths, with a weight for each; every wavelength has its own law E[escaped weight] = T_l and E[collided \
+    let text = "One flight counts for all wavelengths, with a weight for each; every wavelength has its own law E[escaped weight] = T_l and E[collided \
          weight] = 1 − T_l. The baseline is one flight per wavelength, which makes as many walks. A look-up is one evaluation of all \
-         wavelengths."
-            .to_owned(),
-    ];
-    let (table, mut unsound) = tinted(run, &ray)?;
+         wavelengths.";
+    let (table, unsound) = tinted(run, &ray)?;
     run.advance();
-    let (chart, more) = two(run, &ray)?;
-    unsound.extend(more);
-    section.charts = vec![chart];
-    section.tables = vec![table];
-    Ok(Spectral { section, unsound })
+    let section = Section {
+        text: vec![text.to_owned()],
+        charts: vec![two(run, &ray)?],
+        tables: vec![table],
+        ..Section::new("spectral", "Several wavelengths at once")
+    };
+    Ok(Part { section, unsound })
 }
 
 /// The seed ray in N wavelengths.
@@ -209,91 +198,76 @@ fn tinted(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<(Table, Vec<S
     let coefficients = [1.0, 0.6, 0.25];
     let (field, thickness) = scaled(ray, coefficients)?;
     let flights = run.quick_or(100_000, 2_000_000);
-    let mut table = Table::new(
-        "spectral-tinted",
-        "Three wavelengths on the seed ray",
-        "Extinctions 1, 0.6 and 0.25 times that of eq. 21. Variances of one flight, in units of what is estimated.",
+    let samplers = all(&field, (thickness, coefficients), (flights, run.seed("spectral/tinted")))?;
+    let rows: Vec<_> =
+        samplers.iter().flat_map(|(name, scored)| (0..3).map(move |l| (*name, scored, l))).collect();
+    let unsound = rows.iter().flat_map(|(name, scored, l)| {
+        let z = [scored.escaped[*l], scored.collided[*l]].map(|scores| {
+            let (mean, error) = mean(&scores);
+            (mean - 1.0) / error
+        });
+        let off = z.into_iter().filter(|z| z.abs() > 6.0 && *name != BASELINE);
+        off.map(move |z| format!("{name}, wavelength {}: a mean is off by {z:.1} standard errors", l + 1))
+    });
+    let unsound = unsound.collect();
+    let variance = |scores: &Moments| Cell::maybe(scores.population_variance());
+    let measured = |scores: &Moments| {
+        let (mean, error) = mean(scores);
+        Measured::normal(mean, error).cell()
+    };
+    let table = Table::of(
+        [
+            "spectral-tinted",
+            "Three wavelengths on the seed ray",
+            "Extinctions 1, 0.6 and 0.25 times that of eq. 21. Variances of one flight, in units of what is estimated.",
+        ],
+        rows,
         &[
-            ("sampler", ""),
-            ("wavelength", ""),
-            ("look-ups", "1"),
-            ("escaped: Var/T²", "1"),
-            ("collided: Var/(1 − T)²", "1"),
-            ("escaped mean / T", "1"),
-            ("collided mean / (1 − T)", "1"),
-            ("greatest weight", "1"),
+            ("sampler", "", &|(name, ..)| Cell::text(*name)),
+            ("wavelength", "", &|(.., l)| Cell::Count(*l as u64 + 1)),
+            ("look-ups", "1", &|(_, scored, _)| Cell::Number(scored.lookups)),
+            ("escaped: Var/T²", "1", &|(_, scored, l)| variance(&scored.escaped[*l])),
+            ("collided: Var/(1 − T)²", "1", &|(_, scored, l)| variance(&scored.collided[*l])),
+            ("escaped mean / T", "1", &|(_, scored, l)| measured(&scored.escaped[*l])),
+            ("collided mean / (1 − T)", "1", &|(_, scored, l)| measured(&scored.collided[*l])),
+            ("greatest weight", "1", &|(_, scored, _)| Cell::Number(scored.greatest())),
         ],
     );
-    let mut unsound = Vec::new();
-    for (name, scored) in all(&field, (thickness, coefficients), (flights, run.seed(PART, 0)))? {
-        for l in 0..3 {
-            let measured = |row: usize| {
-                let (mean, error) = (scored.means[row][l], 1.96 * scored.errors[row][l]);
-                Cell::measured(mean, [mean - error, mean + error])
-            };
-            for row in 0..2 {
-                let z = (scored.means[row][l] - 1.0) / scored.errors[row][l];
-                if z.abs() > 6.0 && name != BASELINE {
-                    unsound.push(format!(
-                        "{name}, wavelength {}: a mean is off by {z:.1} standard errors",
-                        l + 1
-                    ));
-                }
-            }
-            table.rows.push(vec![
-                Cell::text(name),
-                Cell::Count(l as u64 + 1),
-                Cell::Number(scored.lookups),
-                Cell::Number(scored.escaped[l]),
-                Cell::Number(scored.collided[l]),
-                measured(0),
-                measured(1),
-                Cell::Number(scored.greatest),
-            ]);
-        }
-    }
     Ok((table, unsound))
 }
 
+fn mean(scores: &Moments) -> (f64, f64) {
+    (scores.mean().unwrap_or(f64::NAN), scores.standard_error().unwrap_or(f64::NAN))
+}
+
 /// Two wavelengths, further and further apart.
-fn two(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<(Chart, Vec<String>), Failure> {
-    let mut chart = Chart::new(
-        "spectral-ratio",
-        "Two wavelengths: the worse variance of what collides",
-        Axis::linear("σ_2 / σ_1 [1]"),
-        Axis::logarithmic("Var · look-ups / (1 − T)² [1]"),
-    );
-    chart.caption = "With the distances of the densest wavelength the weights of the thinner one grow along the ray; in an endless medium their variance \
-                     is infinite from a factor of 2 on (raab-2008 3.2). This ray ends: what is measured beyond is hollow."
-        .to_owned();
+fn two(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<Chart, Failure> {
     let flights = run.quick_or(50_000, 500_000);
-    let mut curves: Vec<(&'static str, Vec<(f64, f64)>)> = Vec::new();
-    for (k, &ratio) in (0..).zip(&RATIOS) {
+    let mut curves: Vec<(&'static str, Vec<Mark>)> = Vec::new();
+    for &ratio in &RATIOS {
         let coefficients = [0.25, 0.25 * ratio];
         let (field, thickness) = scaled(ray, coefficients)?;
-        for (i, (name, scored)) in
-            all(&field, (thickness, coefficients), (flights, run.seed(PART, 1 + k)))?.into_iter().enumerate()
-        {
-            if curves.len() <= i {
-                curves.push((name, Vec::new()));
-            }
-            let worst = scored.collided.into_iter().fold(0.0, f64::max);
-            curves[i].1.push((ratio, worst * scored.lookups));
+        let seed = run.seed(format_args!("spectral/two/{ratio}"));
+        let scored = all(&field, (thickness, coefficients), (flights, seed))?;
+        curves.resize_with(scored.len(), Default::default);
+        for ((label, marks), (name, scored)) in curves.iter_mut().zip(scored) {
+            let worst = scored.collided.iter().filter_map(Moments::population_variance).fold(0.0, f64::max);
+            let mark = Mark::at(ratio, worst * scored.lookups);
+            *label = name;
+            marks.push(if name == BASELINE && ratio >= 2.0 { mark.hollow() } else { mark });
         }
         run.advance();
     }
-    chart.curves = curves
-        .into_iter()
-        .map(|(name, points)| {
-            let marks: Vec<Mark> = points
-                .iter()
-                .map(|&(x, y)| {
-                    let mark = Mark::at(x, y);
-                    if name == BASELINE && x >= 2.0 { mark.hollow() } else { mark }
-                })
-                .collect();
-            Curve::method(name).with_line(points).with_marks(marks)
-        })
-        .collect();
-    Ok((chart, Vec::new()))
+    Ok(Chart {
+        caption: "With the distances of the densest wavelength the weights of the thinner one grow along the ray; in an endless medium their variance \
+                  is infinite from a factor of 2 on (raab-2008 3.2). This ray ends: what is measured beyond is hollow."
+            .to_owned(),
+        curves: curves.into_iter().map(|(name, marks)| Curve::joined(name, marks)).collect(),
+        ..Chart::new(
+            "spectral-ratio",
+            "Two wavelengths: the worse variance of what collides",
+            Axis::linear("σ_2 / σ_1 [1]"),
+            Axis::logarithmic("Var · look-ups / (1 − T)² [1]"),
+        )
+    })
 }

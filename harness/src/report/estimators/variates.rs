@@ -4,22 +4,21 @@ use super::seed_ray;
 use crate::Failure;
 use crate::comparison::TestRay;
 use crate::field::AnyProfile;
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
-use crate::report::run::Run;
+use crate::parallel::try_in_parallel;
+use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
+use crate::report::measured::{Measured, mean_and_error};
+use crate::report::run::{Part, Run};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Bounded, Constant, Extinction, Vacuum};
 use fairflight_sources::{
-    Halton, Hammersley, LatinHypercube, PointSet, PointSetError, Seeded, Sobol, UniformSource, derive_seed,
+    Halton, Hammersley, LatinHypercube, PointSet, PointSetError, Seeded, Sobol, UniformSource, named_seed,
 };
 use fairflight_transmittance::{
     Comb, CombShape, JitteredRatio, Roulette, Tracking, TransmittanceEstimator, UnbiasedRayMarching,
 };
-use rayon::prelude::*;
 
-/// The part of the report, for its seeds.
-const PART: u64 = 6;
 /// Replicas of a point set: what its variance is measured over.
-const REPLICAS: u64 = 256;
+const REPLICAS: usize = 256;
 /// Points of a replica.
 const POINTS: [u64; 5] = [4, 16, 64, 256, 1024];
 /// Coordinates that a set orders; what an estimate draws beyond is independent.
@@ -72,13 +71,7 @@ const SOURCES: [Source; 5] = [
     },
 ];
 
-/// What came of the point sets.
-pub(super) struct Variates {
-    pub(super) section: Section,
-    pub(super) unsound: Vec<String>,
-}
-
-pub(super) fn study(run: &Run<'_>) -> Result<Variates, Failure> {
+pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
     let TestRay { profile, truth, .. } = seed_ray::ray(run)?;
     let AnyProfile::AnalyticCosine(ray) = &profile else {
         return Err(Failure::refused("profile: the seed ray is one of eq. 21"));
@@ -92,7 +85,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Variates, Failure> {
     let marching = UnbiasedRayMarching::new(comb, Roulette::KETTUNEN);
     let jittered = JitteredRatio::new(0.5).map_err(|error| refuse(&error))?;
     let unit = truth.optical_thickness.exp();
-    let estimates: [(&str, &str, &Estimate<'_>); 3] = [
+    let estimates: [(&str, &'static str, &Estimate<'_>); 3] = [
         ("ratio", "ratio tracking", &|mut source| unit * ratio.estimate(&field, &mut source)),
         ("marching", "unbiased ray marching, 25 teeth", &|mut source| {
             unit * marching.estimate(&field, &mut source)
@@ -101,79 +94,83 @@ pub(super) fn study(run: &Run<'_>) -> Result<Variates, Failure> {
             unit * jittered.estimate(&field, &mut source)
         }),
     ];
-    let mut section = Section::new("variates", "Variates from point sets");
-    section.text = vec![format!(
+    let text = format!(
         "The seed ray again. A replica is one randomised point set of n points, one estimate per point; each estimate is unbiased by itself, and \
          the variance of their mean is measured over {REPLICAS} replicas: never over the points of one, which depend on each other. The \
          sets order the first {DIMENSIONS} variates of an estimate; what it draws beyond is independent."
-    )];
-    let mut table = Table::new(
-        "variates-variance",
-        "Variance of a mean of n over that of independent variates",
-        "With the 95 % interval of a ratio of two variances of as many replicas (normal replicas: a factor of 1.28 either way).",
-        &[
-            ("estimator", ""),
-            ("variates", ""),
-            ("n", "1"),
-            ("relative variance", "1"),
-            ("z of the mean", "1"),
-        ],
     );
-    let mut unsound = Vec::new();
-    for (k, (id, name, estimate)) in (0..).zip(estimates) {
-        let mut chart = Chart::new(
-            &format!("variates-{id}"),
-            &format!("Variance of a mean: {name}"),
-            Axis::logarithmic("points [1]"),
-            Axis::logarithmic("variance of the mean / T² [1]"),
-        );
-        let mut independent: Vec<f64> = Vec::new();
-        for (s, source) in (0..).zip(&SOURCES) {
-            let mut marks = Vec::new();
-            for (i, &points) in POINTS.iter().enumerate() {
-                let seed = derive_seed(derive_seed(run.seed(PART, k), s), points);
-                let replicas = run.quick_or(REPLICAS / 8, REPLICAS);
-                let means: Result<Vec<f64>, PointSetError> = (0..replicas)
-                    .into_par_iter()
-                    .map(|replica| (source.replica)(estimate, points, derive_seed(seed, replica)))
-                    .collect();
-                let means = means.map_err(|error| refuse(&error))?;
-                let (mean, variance) = mean_and_variance(&means);
-                let z = (mean - 1.0) / (variance / replicas as f64).sqrt();
-                // Means of many estimates over hundreds of replicas, of laws whose tails are mild: close to normal.
-                if z.abs() > 6.0 && points >= 64 {
-                    unsound.push(format!(
-                        "{name} by {} points: its mean is off by {z:.1} standard errors",
-                        source.name
-                    ));
-                }
-                if s == 0 {
-                    independent.push(variance);
-                }
-                let factor = (1.96 * (2.0 / (replicas - 1) as f64).sqrt()).exp();
-                let ratio = variance / independent[i];
-                let wide = factor.powf(std::f64::consts::SQRT_2);
-                table.rows.push(vec![
-                    Cell::text(name),
-                    Cell::text(source.name),
-                    Cell::Count(points),
-                    Cell::measured(ratio, [ratio / wide, ratio * wide]),
-                    Cell::Number(z),
-                ]);
-                marks.push(Mark::measured(points as f64, variance, [variance / factor, variance * factor]));
-            }
-            let line: Vec<(f64, f64)> = marks.iter().map(|mark| (mark.x, mark.y)).collect();
-            chart.curves.push(Curve::method(source.name).with_line(line).with_marks(marks));
+    let replicas = run.quick_or(REPLICAS / 8, REPLICAS);
+    let (mut rows, mut charts) = (Vec::new(), Vec::new());
+    for (id, name, estimate) in estimates {
+        let measure = |source: &Source| -> Result<Vec<Row>, Failure> {
+            let row = |&points: &u64| {
+                let seed = run.seed(format_args!("variates/{id}/{}/{points}", source.name));
+                let means = try_in_parallel(replicas, &|k| {
+                    let seed = named_seed(seed, &format!("replica {k}"));
+                    (source.replica)(estimate, points, seed).map_err(|error| refuse(&error))
+                })?;
+                let (mean, error) = mean_and_error(&means);
+                let (variance, z) = (Measured::variance(&means), (mean - 1.0) / error);
+                Ok(Row { estimator: name, source: source.name, points, variance, z })
+            };
+            POINTS.iter().map(row).collect()
+        };
+        let by_source = SOURCES.iter().map(measure).collect::<Result<Vec<_>, Failure>>()?;
+        let curve = |rows: &Vec<Row>| {
+            let marks = rows.iter().map(|row| row.variance.mark(row.points as f64));
+            Curve::joined(rows[0].source, marks)
+        };
+        charts.push(Chart {
+            curves: by_source.iter().map(curve).collect(),
+            ..Chart::new(
+                &format!("variates-{id}"),
+                &format!("Variance of a mean: {name}"),
+                Axis::logarithmic("points [1]"),
+                Axis::logarithmic("variance of the mean / T² [1]"),
+            )
+        });
+        let independent: Vec<Measured> = by_source[0].iter().map(|row| row.variance).collect();
+        for (row, independent) in by_source.into_iter().flat_map(|rows| rows.into_iter().zip(&independent)) {
+            rows.push((row.variance.over(independent), row));
         }
         run.advance();
-        section.charts.push(chart);
     }
-    section.tables = vec![table];
-    Ok(Variates { section, unsound })
+    // Means of many estimates over hundreds of replicas, of laws whose tails are mild: close to normal.
+    let unsound = rows.iter().filter(|(_, row)| row.z.abs() > 6.0 && row.points >= 64).map(|(_, row)| {
+        let Row { estimator, source, z, .. } = row;
+        format!("{estimator} by {source} points: its mean is off by {z:.1} standard errors")
+    });
+    let unsound = unsound.collect();
+    let table = Table::of(
+        [
+            "variates-variance",
+            "Variance of a mean of n over that of independent variates",
+            "With the 95 % interval of a ratio of two variances of as many replicas (normal replicas: a factor of 1.28 either way).",
+        ],
+        rows,
+        &[
+            ("estimator", "", &|(_, row)| Cell::text(row.estimator)),
+            ("variates", "", &|(_, row)| Cell::text(row.source)),
+            ("n", "1", &|(_, row)| Cell::Count(row.points)),
+            ("relative variance", "1", &|(relative, _)| relative.cell()),
+            ("z of the mean", "1", &|(_, row)| Cell::Number(row.z)),
+        ],
+    );
+    let section = Section {
+        text: vec![text],
+        charts,
+        tables: vec![table],
+        ..Section::new("variates", "Variates from point sets")
+    };
+    Ok(Part { section, unsound })
 }
 
-fn mean_and_variance(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (mean, values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0))
+/// An estimator driven by sets of so many points.
+struct Row {
+    estimator: &'static str,
+    source: &'static str,
+    points: u64,
+    /// Of the mean over the points of a set, in units of T².
+    variance: Measured,
+    z: f64,
 }

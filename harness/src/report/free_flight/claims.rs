@@ -21,18 +21,18 @@ pub(super) fn r1(laws: &Laws) -> Claim {
     } else {
         ClaimVerdict::NotTestable
     };
-    Claim {
-        id: "R1".to_owned(),
-        claim: "Algorithm 1 samples the exact distance density for any bounded medium".to_owned(),
-        source: "raab-2008 section 3".to_owned(),
-        measured: format!(
+    Claim::new(
+        ("R1", "raab-2008 section 3"),
+        "Algorithm 1 samples the exact distance density for any bounded medium",
+        format!(
             "{held} of {} laws hold over {flights} flights; a relative bias of {worst:.2e} would have been found in the worst of them",
             woodcock.len()
         ),
-        verdict,
-        comment: "With −ln(1 − u) and a strict comparison, as corrected; the printed listing can divide by zero and collide in empty space."
-            .to_owned(),
-    }
+        (
+            verdict,
+            "With −ln(1 − u) and a strict comparison, as corrected; the printed listing can divide by zero and collide in empty space.",
+        ),
+    )
 }
 
 /// R2: algorithm 2 beats independent starts at equal cost, and nears ray marching's smoothness as the medium becomes homogeneous.
@@ -57,22 +57,21 @@ pub(super) fn r2(splitting: &Splitting) -> Claim {
             )
         })
         .collect();
-    Claim {
-        id: "R2".to_owned(),
-        claim: "Algorithm 2 beats independent starting points at equal cost, and nears ray marching's smoothness as the medium becomes \
-                homogeneous"
-            .to_owned(),
-        source: "raab-2008 fig. 1, 2".to_owned(),
-        measured: format!("ratios of noise. {}", words.join("; ")),
-        verdict: match (beats, nears) {
-            (true, true) => ClaimVerdict::Holds,
-            (true, false) | (false, true) => ClaimVerdict::HoldsUnder,
-            (false, false) => ClaimVerdict::DoesNotHold,
-        },
-        comment: "The first steps are all that is stratified: where most of them meet nothing, little of it is left. Towards the homogeneous \
-                  medium its noise falls, but that of ray marching falls further."
-            .to_owned(),
-    }
+    let verdict = match (beats, nears) {
+        (true, true) => ClaimVerdict::Holds,
+        (true, false) | (false, true) => ClaimVerdict::HoldsUnder,
+        (false, false) => ClaimVerdict::DoesNotHold,
+    };
+    Claim::new(
+        ("R2", "raab-2008 fig. 1, 2"),
+        "Algorithm 2 beats independent starting points at equal cost, and nears ray marching's smoothness as the medium becomes homogeneous",
+        format!("ratios of noise. {}", words.join("; ")),
+        (
+            verdict,
+            "The first steps are all that is stratified: where most of them meet nothing, little of it is left. Towards the homogeneous \
+             medium its noise falls, but that of ray marching falls further.",
+        ),
+    )
 }
 
 /// R3: the variance formula of two wavelengths, infinite from a factor of 2.
@@ -99,21 +98,22 @@ pub(super) fn r3(wavelengths: &Wavelengths) -> Claim {
         .iter()
         .filter(|point| point.verdict.variance_p.is_some() && point.closed_form > 0.0)
         .map(|point| {
-            format!("{} at {}", format_args!("{:.4}", point.variance / point.closed_form), point.ratio)
+            format!("{} at {}", format_args!("{:.4}", point.variance.value / point.closed_form), point.ratio)
         })
         .collect();
-    Claim {
-        id: "R3".to_owned(),
-        claim: "Two wavelengths at once: variance 1/(2σ₁σ₂ − σ₂²) − 1/σ₁², infinite from σ₂ = 2σ₁ on".to_owned(),
-        source: "raab-2008 section 3.2".to_owned(),
-        measured: format!(
+    Claim::new(
+        ("R3", "raab-2008 section 3.2"),
+        "Two wavelengths at once: variance 1/(2σ₁σ₂ − σ₂²) − 1/σ₁², infinite from σ₂ = 2σ₁ on",
+        format!(
             "measured over formula, where testable: {}; beyond 2 the sample variance grows with the number of estimates: {}",
             words.join(", "),
             if grows { "yes" } else { "not in every case" }
         ),
-        verdict,
-        comment: "From a ratio of 4/3 on the fourth moment is infinite too: the variance is right and no sample of ours can test it.".to_owned(),
-    }
+        (
+            verdict,
+            "From a ratio of 4/3 on the fourth moment is infinite too: the variance is right and no sample of ours can test it.",
+        ),
+    )
 }
 
 /// The findings, in words.

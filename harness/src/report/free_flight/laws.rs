@@ -1,11 +1,11 @@
 //! Every sampler of distances on every medium, by the law that `harness verify` checks too.
 
+use crate::parallel::in_parallel;
 use crate::report::document::{Cell, Section, Table};
-use crate::report::run::Run;
+use crate::report::run::{Part, Run};
 use fairflight_catalogue::{Check, Effort, catalogue};
 use fairflight_laws::CheckResult;
 use fairflight_stats::sidak_level;
-use rayon::prelude::*;
 
 /// False alarm of all checks together.
 const FAMILY_LEVEL: f64 = 1e-6;
@@ -21,69 +21,53 @@ pub(super) fn steps() -> u64 {
 /// What the laws came to.
 pub(super) struct Laws {
     pub(super) results: Vec<(String, CheckResult)>,
-    pub(super) section: Section,
-    pub(super) unsound: Vec<String>,
+    pub(super) part: Part,
 }
 
 pub(super) fn study(run: &Run<'_>) -> Laws {
     let checks = checks();
     let alpha = sidak_level(FAMILY_LEVEL, checks.len());
     let effort = if run.options.quick { Effort::Quick } else { Effort::Full };
-    let results: Vec<(String, CheckResult)> = checks
-        .par_iter()
-        // One check a task: some take a hundred times as long as others.
-        .with_max_len(1)
-        .map(|check| {
-            let result = check.run(effort, run.seed(1, 0), alpha);
-            run.advance();
-            (check.id.clone(), result)
-        })
-        .collect();
+    let results = in_parallel(checks.len(), &|i| {
+        let result = checks[i].run(effort, run.seed("laws"), alpha);
+        run.advance();
+        (checks[i].id.clone(), result)
+    });
     let unsound = results
         .iter()
         .filter(|(_, result)| result.holds == Some(false))
         .map(|(id, result)| format!("{id}: {}", result.reason))
         .collect();
-    let section = section(&results);
-    Laws { results, section, unsound }
+    let part = Part { section: section(&results), unsound };
+    Laws { results, part }
 }
 
 fn section(results: &[(String, CheckResult)]) -> Section {
-    let mut section = Section::new("laws", "The law of every sampler");
-    section.text = vec![
-        "Weighted flights integrate any test function against σ_t T, and those that escape weigh T on average. Four test functions and \
+    let text = "Weighted flights integrate any test function against σ_t T, and those that escape weigh T on average. Four test functions and \
          the escaped weight are judged against quadrature, their variances against the closed form, the number of look-ups against its \
          law, and the distances of samplers without weights against their distribution (Kolmogorov and Smirnov). \"Detectable\" is the \
-         smallest relative bias that the run would have found with probability 0.99; the false alarm of the whole table is below 10⁻⁶."
-            .to_owned(),
-    ];
-    let mut table = Table::new(
-        "laws-table",
-        "Laws of free flight",
-        "",
+         smallest relative bias that the run would have found with probability 0.99; the false alarm of the whole table is below 10⁻⁶.";
+    let table = Table::of(
+        ["laws-table", "Laws of free flight", ""],
+        results,
         &[
-            ("medium and sampler", ""),
-            ("verdict", ""),
-            ("flights", "1"),
-            ("largest z of a mean", "1"),
-            ("z of the look-ups", "1"),
-            ("detectable", "1"),
+            ("medium and sampler", "", &|(id, _)| Cell::text(id.trim_start_matches("freeflight/"))),
+            ("verdict", "", &|(_, result)| {
+                Cell::text(match result.holds {
+                    Some(true) => "holds",
+                    Some(false) => "does not hold",
+                    None => "not testable",
+                })
+            }),
+            ("flights", "1", &|(_, result)| Cell::Count(result.samples)),
+            ("largest z of a mean", "1", &|(_, result)| Cell::maybe(result.mean_z)),
+            ("z of the look-ups", "1", &|(_, result)| Cell::maybe(result.lookups_z)),
+            ("detectable", "1", &|(_, result)| Cell::maybe(result.detectable_relative_bias)),
         ],
     );
-    for (id, result) in results {
-        table.rows.push(vec![
-            Cell::text(id.trim_start_matches("freeflight/")),
-            Cell::text(match result.holds {
-                Some(true) => "holds",
-                Some(false) => "does not hold",
-                None => "not testable",
-            }),
-            Cell::Count(result.samples),
-            Cell::maybe(result.mean_z),
-            Cell::maybe(result.lookups_z),
-            Cell::maybe(result.detectable_relative_bias),
-        ]);
+    Section {
+        text: vec![text.to_owned()],
+        tables: vec![table],
+        ..Section::new("laws", "The law of every sampler")
     }
-    section.tables = vec![table];
-    section
 }

@@ -2,12 +2,10 @@
 //! highly inhomogeneous hazy medium, beside ray marching at as many look-ups.
 
 use crate::Failure;
-use crate::report::document::{
-    Axis, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
-};
-use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
-use crate::report::speed::curve as joined;
 use serde_json::{Value, json};
 
 /// Powers of the wave: the higher, the less homogeneous.
@@ -101,29 +99,26 @@ fn marching(steps: u32) -> Value {
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Splitting, Failure> {
-    let resolution = if run.options.quick { 24 } else { 64 };
+    let resolution = run.quick_or(24, 64);
     let [whole, narrow] = VIEWS;
     let mut points = Vec::new();
-    for (k, &power) in POWERS.iter().enumerate() {
+    for &power in &POWERS {
         let (window, ball) = (scene(resolution / 2, narrow, power), scene(resolution, whole, power));
-        let method = |integrator: Value, m: u64| {
-            let seed = |part: u64| run.seed(4, 100 * k as u64 + 10 * m + part);
-            let rays = if run.options.quick { MEASURED_RAYS / 4 } else { MEASURED_RAYS };
-            let measured = window.with("integrator", integrator.clone()).measure(
-                rays,
-                (seed(0), REPLICAS),
-                &run.media,
-            )?;
+        let method = |integrator: Value, name: &str| {
+            let seed = |what: &str| run.seed(format_args!("splitting/{power}/{name}/{what}"));
+            let rays = run.quick_or(MEASURED_RAYS / 4, MEASURED_RAYS);
+            let narrow = window.with("integrator", integrator.clone());
+            let measured = narrow.measure(rays, (seed("window"), REPLICAS), &run.media)?;
             let shown = SHOWN
                 .contains(&power)
-                .then(|| ball.with("integrator", integrator).measure(RAYS, (seed(1), 2), &run.media));
+                .then(|| ball.with("integrator", integrator).measure(RAYS, (seed("image"), 2), &run.media));
             run.advance();
             Ok::<_, Failure>(Method { window: measured, image: shown.transpose()? })
         };
-        let equidistant = method(flights(power, "equidistant"), 0)?;
-        let independent = method(flights(power, "independent"), 1)?;
+        let equidistant = method(flights(power, "equidistant"), "equidistant")?;
+        let independent = method(flights(power, "independent"), "independent")?;
         // As many steps as flights: in a homogeneous medium both look up as often.
-        let marched = method(marching(FLIGHTS), 2)?;
+        let marched = method(marching(FLIGHTS), "marching")?;
         let noise = |method: &Method| method.window.squared_error().map(f64::sqrt);
         let mean = |method: &Method| {
             let (pixels, _) = method.window.mean();
@@ -148,91 +143,67 @@ pub(super) fn study(run: &Run<'_>) -> Result<Splitting, Failure> {
 }
 
 fn section(points: &[Point]) -> Section {
-    let mut section = Section::new("splitting", "raab-2008 fig. 2: splitting along the primary ray");
-    section.text = vec![format!(
+    let text = format!(
         "A ball of haze (hazy Mie, albedo 0.9) of mean extinction {MEAN}, lit by sixteen point lights around it: single scattering, \
          {FLIGHTS} flights per camera ray. The extinction is a plane wave ((1 + cos)/2)^p: homogeneous for p = 0, thin sheets for p = 20. The \
          majorant over the mean extinction measures how inhomogeneous it is. Ray marching takes {FLIGHTS} jittered steps; all share the same \
          quadrature on shadow rays, so that what differs is the camera ray. Noise is the standard deviation of a pixel of {MEASURED_RAYS} \
          camera rays, in a window of {}° in the middle of the ball; of ray marching it leaves out the bias, which the table shows.",
         VIEWS[1]
-    )];
-    let curve = |label: &str, value: fn(&Point) -> Measured| {
-        let marks: Vec<Mark> = points
-            .iter()
-            .map(|point| {
-                let measured = value(point);
-                Mark::measured(point.inhomogeneity, measured.value, measured.interval)
-            })
-            .collect();
-        joined(label, marks)
-    };
-    let mut chart = Chart::new(
-        "splitting-error",
-        "Noise from homogeneous to inhomogeneous",
-        Axis::logarithmic("majorant / mean extinction [1]"),
-        Axis::logarithmic("standard deviation of a pixel [radiance]"),
     );
-    chart.curves = vec![
-        curve("equidistant starts", |point| point.equidistant),
-        curve("independent starts", |point| point.independent),
-        curve("ray marching, jittered (biased)", |point| point.marching),
-    ];
-    section.charts = vec![chart];
-    let mut table = Table::new(
-        "splitting-table",
-        "Noise of a pixel",
-        "",
+    let curve = |label: &str, value: fn(&Point) -> Measured| {
+        Curve::joined(label, points.iter().map(|point| value(point).mark(point.inhomogeneity)))
+    };
+    let chart = Chart {
+        curves: vec![
+            curve("equidistant starts", |point| point.equidistant),
+            curve("independent starts", |point| point.independent),
+            curve("ray marching, jittered (biased)", |point| point.marching),
+        ],
+        ..Chart::new(
+            "splitting-error",
+            "Noise from homogeneous to inhomogeneous",
+            Axis::logarithmic("majorant / mean extinction [1]"),
+            Axis::logarithmic("standard deviation of a pixel [radiance]"),
+        )
+    };
+    let per_ray = |point: &Point, m: usize| {
+        let window = &point.methods[m].1.window;
+        Cell::Number(window.lookups_per_pixel() / f64::from(window.rays_per_pixel()))
+    };
+    let table = Table::of(
+        ["splitting-table", "Noise of a pixel", ""],
+        points,
         &[
-            ("p", "1"),
-            ("majorant / mean", "1"),
-            ("equidistant", "radiance"),
-            ("independent", "radiance"),
-            ("ray marching", "radiance"),
-            ("bias of ray marching", "1"),
-            ("look-ups per ray, flights", "1"),
-            ("look-ups per ray, marching", "1"),
+            ("p", "1", &|point| Cell::Count(point.power.into())),
+            ("majorant / mean", "1", &|point| Cell::Number(point.inhomogeneity)),
+            ("equidistant", "radiance", &|point| point.equidistant.cell()),
+            ("independent", "radiance", &|point| point.independent.cell()),
+            ("ray marching", "radiance", &|point| point.marching.cell()),
+            ("bias of ray marching", "1", &|point| Cell::Number(point.bias)),
+            ("look-ups per ray, flights", "1", &|point| per_ray(point, 0)),
+            ("look-ups per ray, marching", "1", &|point| per_ray(point, 2)),
         ],
     );
-    let per_ray =
-        |method: &Method| method.window.lookups_per_pixel() / f64::from(method.window.rays_per_pixel());
-    for point in points {
-        let cell = |measured: Measured| Cell::measured(measured.value, measured.interval);
-        table.rows.push(vec![
-            Cell::Count(u64::from(point.power)),
-            Cell::Number(point.inhomogeneity),
-            cell(point.equidistant),
-            cell(point.independent),
-            cell(point.marching),
-            Cell::Number(point.bias),
-            Cell::Number(per_ray(&point.methods[0].1)),
-            Cell::Number(per_ray(&point.methods[2].1)),
-        ]);
+    let pictures = |point: &Point| {
+        let images = point.methods.iter().enumerate();
+        let images = images.filter_map(|(m, (label, method))| Some((m, label, method.image.as_ref()?)));
+        let picture = |(m, label, image): (usize, &&str, &Replicas)| {
+            let lines = vec![format!("{} camera rays", image.rays_per_pixel())];
+            image.picture(format!("splitting-{}-{m}", point.power), *label, lines, 3.0)
+        };
+        (format!("p = {}", point.power), images.map(picture).collect())
+    };
+    let shown = points.iter().filter(|point| SHOWN.contains(&point.power)).map(pictures);
+    Section {
+        text: vec![text],
+        charts: vec![chart],
+        tables: vec![table],
+        galleries: vec![Gallery::of_images(
+            "splitting-images",
+            "Homogeneous and highly inhomogeneous",
+            shown.collect(),
+        )],
+        ..Section::new("splitting", "raab-2008 fig. 2: splitting along the primary ray")
     }
-    section.tables = vec![table];
-    let shown = points.iter().filter(|point| SHOWN.contains(&point.power));
-    section.galleries = vec![Gallery {
-        id: "splitting-images".to_owned(),
-        title: "Homogeneous and highly inhomogeneous".to_owned(),
-        caption: "One image of each measurement.".to_owned(),
-        rows: shown
-            .map(|point| GalleryRow {
-                label: format!("p = {}", point.power),
-                pictures: point
-                    .methods
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(m, (label, method))| Some((m, label, method.image.as_ref()?)))
-                    .map(|(m, label, image)| Picture {
-                        id: format!("splitting-{}-{m}", point.power),
-                        label: (*label).to_owned(),
-                        lines: vec![format!("{} camera rays", image.rays_per_pixel())],
-                        resolution: image.first().resolution(),
-                        pixels: Pixels::Radiance { values: image.first().means().to_vec(), exposure: 3.0 },
-                    })
-                    .collect(),
-            })
-            .collect(),
-    }];
-    section
 }

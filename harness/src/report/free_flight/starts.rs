@@ -40,38 +40,42 @@ fn greatest_gap(equidistant: bool, source: &mut Seeded) -> f64 {
 }
 
 pub(super) fn section(run: &Run<'_>) -> Section {
-    let mut source = Seeded::new(run.seed(3, 0));
-    let mut chart = Chart::new(
-        "starts-points",
-        "First collisions along a ray",
-        Axis::linear("distance / length of the ray [1]"),
-        Axis::linear("independent 1 to 4, equidistant 5 to 8").within(0.0, 9.0),
-    );
-    chart.caption = format!(
-        "Four sets of {POINTS} first collisions of each kind, majorant optical thickness {THICKNESS}: the points from which the flights of \
-         algorithm 2 start."
-    );
-    let mut curve = |label: &str, equidistant: bool, rows: std::ops::Range<u32>| {
-        let marks = rows.flat_map(|row| {
-            set(equidistant, &mut source)
-                .into_iter()
-                .map(move |t| Mark::at(t, f64::from(row)))
-                .collect::<Vec<_>>()
-        });
-        Curve::method(label).with_marks(marks.collect::<Vec<_>>())
+    let source = |what: &str, label: &str| Seeded::new(run.seed(format_args!("starts/{label}/{what}")));
+    let curve = |label: &str, equidistant: bool, rows: std::ops::Range<u32>| {
+        let mut source = source("points", label);
+        let points = rows.flat_map(|row| set(equidistant, &mut source).into_iter().map(move |t| (t, row)));
+        Curve::method(label).with_marks(points.map(|(t, row)| Mark::at(t, f64::from(row))))
     };
-    chart.curves = vec![curve("independent", false, 1..5), curve("equidistant", true, 5..9)];
-    let mut table = Table::new(
-        "starts-gaps",
-        "How even the starts are",
-        "In variates, where both kinds are uniform: the greatest gap of a set over the mean gap, averaged over 20 000 sets.",
-        &[("starts", ""), ("greatest gap / mean gap", "1")],
+    let chart = Chart {
+        caption: format!(
+            "Four sets of {POINTS} first collisions of each kind, majorant optical thickness {THICKNESS}: the points from which the flights of \
+             algorithm 2 start."
+        ),
+        curves: vec![curve("independent", false, 1..5), curve("equidistant", true, 5..9)],
+        ..Chart::new(
+            "starts-points",
+            "First collisions along a ray",
+            Axis::linear("distance / length of the ray [1]"),
+            Axis::linear("independent 1 to 4, equidistant 5 to 8").within(0.0, 9.0),
+        )
+    };
+    let table = Table::of(
+        [
+            "starts-gaps",
+            "How even the starts are",
+            "In variates, where both kinds are uniform: the greatest gap of a set over the mean gap, averaged over 20 000 sets.",
+        ],
+        [("independent", false), ("equidistant", true)],
+        &[
+            ("starts", "", &|(label, _)| Cell::text(*label)),
+            ("greatest gap / mean gap", "1", &|(label, equidistant)| {
+                Cell::Number(greatest_gap(*equidistant, &mut source("gaps", label)))
+            }),
+        ],
     );
-    for (label, equidistant) in [("independent", false), ("equidistant", true)] {
-        table.rows.push(vec![Cell::text(label), Cell::Number(greatest_gap(equidistant, &mut source))]);
+    Section {
+        charts: vec![chart],
+        tables: vec![table],
+        ..Section::new("starts", "raab-2008 fig. 1: where flights start")
     }
-    let mut section = Section::new("starts", "raab-2008 fig. 1: where flights start");
-    section.charts = vec![chart];
-    section.tables = vec![table];
-    section
 }

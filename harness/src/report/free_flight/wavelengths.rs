@@ -1,8 +1,9 @@
 //! Section 3.2: one distance for two wavelengths.
 
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
-use crate::report::run::Run;
+use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::run::{Part, Run};
 use fairflight_laws::measure;
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_stats::{ClosedMoments, Reference, Scores, Verdict, judge};
@@ -21,9 +22,8 @@ pub(super) fn steps() -> u64 {
 /// One ratio with a finite variance.
 pub(super) struct Point {
     pub(super) ratio: f64,
-    pub(super) variance: f64,
+    pub(super) variance: Measured,
     pub(super) closed_form: f64,
-    interval: [f64; 2],
     pub(super) verdict: Verdict,
 }
 
@@ -31,8 +31,7 @@ pub(super) struct Wavelengths {
     pub(super) points: Vec<Point>,
     /// Sample variances over [`GROWING`], per ratio of [`INFINITE`].
     pub(super) growing: Vec<(f64, Vec<f64>)>,
-    pub(super) section: Section,
-    pub(super) unsound: Vec<String>,
+    pub(super) part: Part,
 }
 
 /// exp(−σ₁ t)/(σ₂ exp(−σ₂ t)) at a distance t with the density σ₂ exp(−σ₂ t): an estimate of ∫ exp(−σ₁ t) dt = 1/σ₁, σ₁ = 1.
@@ -64,11 +63,11 @@ fn reference(ratio: f64) -> Reference {
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Wavelengths, Failure> {
-    let samples = if run.options.quick { 200_000 } else { 4_000_000 };
+    let samples = run.quick_or(200_000, 4_000_000);
     let mut points = Vec::new();
-    for (k, &ratio) in RATIOS.iter().enumerate() {
-        let moments = measure(run.seed(5, k as u64), samples, |source| weight(ratio, source))
-            .map_err(Failure::refused)?;
+    for &ratio in &RATIOS {
+        let seed = run.seed(format_args!("wavelengths/{ratio}"));
+        let moments = measure(seed, samples, |source| weight(ratio, source)).map_err(Failure::refused)?;
         let reference = reference(ratio);
         let verdict = judge(&moments, &reference, 1e-7);
         let variance = moments.sample_variance().unwrap_or(f64::NAN);
@@ -80,18 +79,17 @@ pub(super) fn study(run: &Run<'_>) -> Result<Wavelengths, Failure> {
             .unwrap_or(f64::NAN);
         points.push(Point {
             ratio,
-            variance,
+            variance: Measured::normal(variance, error),
             closed_form: closed_form(ratio),
-            interval: [variance - 1.96 * error, variance + 1.96 * error],
             verdict,
         });
         run.advance();
     }
     let mut growing = Vec::new();
-    for (k, &ratio) in INFINITE.iter().enumerate() {
+    for &ratio in &INFINITE {
         let mut variances = Vec::new();
-        for (m, &n) in GROWING.iter().enumerate() {
-            let seed = run.seed(6, 10 * k as u64 + m as u64);
+        for &n in &GROWING {
+            let seed = run.seed(format_args!("wavelengths/{ratio}/{n}"));
             let moments = measure(seed, n, |source| weight(ratio, source)).map_err(Failure::refused)?;
             variances.push(moments.sample_variance().unwrap_or(f64::NAN));
         }
@@ -103,74 +101,73 @@ pub(super) fn study(run: &Run<'_>) -> Result<Wavelengths, Failure> {
         .filter(|point| point.verdict.sound == Some(false))
         .map(|point| format!("two wavelengths at ratio {}: {}", point.ratio, point.verdict.reason))
         .collect();
-    let section = section(&points, &growing, samples);
-    Ok(Wavelengths { points, growing, section, unsound })
+    let part = Part { section: section(&points, &growing, samples), unsound };
+    Ok(Wavelengths { points, growing, part })
 }
 
 fn section(points: &[Point], growing: &[(f64, Vec<f64>)], samples: u64) -> Section {
-    let mut section = Section::new("wavelengths", "raab-2008 section 3.2: two wavelengths at once");
-    section.text = vec![format!(
+    let text = format!(
         "∫ exp(−σ₁ t) dt in an endless homogeneous medium, by distances of another wavelength's σ₂: {samples} estimates for each ratio, \
          σ₁ = 1. The variance is 1/(2σ₁σ₂ − σ₂²) − 1/σ₁², and infinite from σ₂ = 2σ₁ on. A hollow mark is a sample variance that this number \
          cannot test: near 2 its own fourth moment is infinite."
-    )];
-    let mut chart = Chart::new(
-        "wavelengths-variance",
-        "Variance of one wavelength sampled by another",
-        Axis::linear("σ₂/σ₁ [1]"),
-        Axis::logarithmic("variance · σ₁² [1]").within(1e-3, 1e3),
     );
     let marks = points.iter().filter(|point| point.closed_form > 0.0).map(|point| {
-        let mark = Mark::measured(point.ratio, point.variance, point.interval);
+        let mark = point.variance.mark(point.ratio);
         if point.verdict.variance_p.is_some() { mark } else { mark.hollow() }
     });
     let line = (5..=399).map(|i| f64::from(i) * 0.005).filter(|ratio| (ratio - 1.0).abs() > 0.02);
-    chart.curves = vec![
-        Curve::method("measured").with_marks(marks.collect::<Vec<_>>()),
-        Curve::reference("formula of 3.2", line.map(|ratio| (ratio, closed_form(ratio)))),
-    ];
-    section.charts = vec![chart];
-    let mut table = Table::new(
-        "wavelengths-table",
-        "Variance against the formula",
-        "",
+    let chart = Chart {
+        curves: vec![
+            Curve::method("measured").with_marks(marks),
+            Curve::reference("formula of 3.2", line.map(|ratio| (ratio, closed_form(ratio)))),
+        ],
+        ..Chart::new(
+            "wavelengths-variance",
+            "Variance of one wavelength sampled by another",
+            Axis::linear("σ₂/σ₁ [1]"),
+            Axis::logarithmic("variance · σ₁² [1]").within(1e-3, 1e3),
+        )
+    };
+    let verdict = |point: &Point| match (point.verdict.sound, point.verdict.variance_p.is_some()) {
+        (Some(false), _) => "does not hold",
+        (Some(true), true) => "holds",
+        (Some(true), false) => "mean holds, variance not testable",
+        (None, _) => "not testable",
+    };
+    let table = Table::of(
+        ["wavelengths-table", "Variance against the formula", ""],
+        points,
         &[
-            ("σ₂/σ₁", "1"),
-            ("formula", "1"),
-            ("measured", "1"),
-            ("z of the mean", "1"),
-            ("z of the variance", "1"),
-            ("verdict", ""),
+            ("σ₂/σ₁", "1", &|point| Cell::Number(point.ratio)),
+            ("formula", "1", &|point| Cell::Number(point.closed_form)),
+            ("measured", "1", &|point| point.variance.cell()),
+            ("z of the mean", "1", &|point| Cell::maybe(point.verdict.mean_z)),
+            ("z of the variance", "1", &|point| Cell::maybe(point.verdict.variance_z)),
+            ("verdict", "", &|point| Cell::text(verdict(point))),
         ],
     );
-    for point in points {
-        table.rows.push(vec![
-            Cell::Number(point.ratio),
-            Cell::Number(point.closed_form),
-            Cell::measured(point.variance, point.interval),
-            Cell::maybe(point.verdict.mean_z),
-            Cell::maybe(point.verdict.variance_z),
-            Cell::text(match (point.verdict.sound, point.verdict.variance_p.is_some()) {
-                (Some(false), _) => "does not hold",
-                (Some(true), true) => "holds",
-                (Some(true), false) => "mean holds, variance not testable",
-                (None, _) => "not testable",
-            }),
-        ]);
-    }
-    let mut infinite = Table::new(
-        "wavelengths-infinite",
-        "Where the variance is infinite",
-        "The sample variance of more and more estimates: it settles nowhere.",
-        &[("σ₂/σ₁", "1"), ("estimates", "1"), ("sample variance", "1")],
+    let growing = growing
+        .iter()
+        .flat_map(|(ratio, variances)| GROWING.into_iter().zip(variances).map(move |(n, v)| (*ratio, n, *v)));
+    let infinite = Table::of(
+        [
+            "wavelengths-infinite",
+            "Where the variance is infinite",
+            "The sample variance of more and more estimates: it settles nowhere.",
+        ],
+        growing,
+        &[
+            ("σ₂/σ₁", "1", &|(ratio, ..)| Cell::Number(*ratio)),
+            ("estimates", "1", &|(_, n, _)| Cell::Count(*n)),
+            ("sample variance", "1", &|(.., variance)| Cell::Number(*variance)),
+        ],
     );
-    for (ratio, variances) in growing {
-        for (n, variance) in GROWING.iter().zip(variances) {
-            infinite.rows.push(vec![Cell::Number(*ratio), Cell::Count(*n), Cell::Number(*variance)]);
-        }
+    Section {
+        text: vec![text],
+        charts: vec![chart],
+        tables: vec![table, infinite],
+        ..Section::new("wavelengths", "raab-2008 section 3.2: two wavelengths at once")
     }
-    section.tables = vec![table, infinite];
-    section
 }
 
 #[cfg(test)]

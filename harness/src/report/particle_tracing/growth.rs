@@ -1,8 +1,9 @@
 //! Where a walk has a second moment.
 
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table, Vertical};
-use crate::report::run::Run;
+use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table, Vertical};
+use crate::report::measured::Measured;
+use crate::report::run::{Part, Run};
 use fairflight_collision::Version;
 use fairflight_media::phase::{Isotropic, Rayleigh};
 use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, Medium, PhaseFunction};
@@ -18,13 +19,6 @@ pub(super) fn steps() -> u64 {
     3 * RATIOS.len() as u64
 }
 
-/// What the study came to.
-pub(super) struct Study {
-    pub(super) section: Section,
-    /// Factors that contradict the closed form.
-    pub(super) unsound: Vec<String>,
-}
-
 struct Row {
     medium: &'static str,
     ratio: f64,
@@ -32,7 +26,13 @@ struct Row {
     closed_form: Option<f64>,
 }
 
-pub(super) fn study(run: &Run<'_>) -> Result<Study, Failure> {
+impl Row {
+    fn factor(&self) -> Measured {
+        Measured::normal(self.growth.factor, self.growth.standard_error)
+    }
+}
+
+pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
     let mut rows = Vec::new();
     let endless = Volume {
         medium: Homogeneous::new(1.0).map_err(Failure::refused)?,
@@ -52,9 +52,9 @@ pub(super) fn study(run: &Run<'_>) -> Result<Study, Failure> {
         let r = 1.0 / ratio;
         Some((0.7 * r + (1.0 - r).abs()).powi(2))
     };
-    measure(run, 20, &endless, "homogeneous, 10 000 mean free paths", endless_form, &mut rows)?;
-    measure(run, 21, &small, "homogeneous, 1 mean free path", |_| None, &mut rows)?;
-    measure(run, 22, &analytic, "eq. 21", |_| None, &mut rows)?;
+    measure(run, &endless, "homogeneous, 10 000 mean free paths", endless_form, &mut rows)?;
+    measure(run, &small, "homogeneous, 1 mean free path", |_| None, &mut rows)?;
+    measure(run, &analytic, "eq. 21", |_| None, &mut rows)?;
     let unsound = rows
         .iter()
         .filter_map(|row| {
@@ -71,20 +71,20 @@ pub(super) fn study(run: &Run<'_>) -> Result<Study, Failure> {
             })
         })
         .collect();
-    Ok(Study { section: section(&rows), unsound })
+    Ok(Part { section: section(&rows), unsound })
 }
 
 fn measure<M: Medium, P: PhaseFunction>(
     run: &Run<'_>,
-    part: u64,
     volume: &Volume<M, P, f64>,
     medium: &'static str,
     closed_form: impl Fn(f64) -> Option<f64>,
     rows: &mut Vec<Row>,
 ) -> Result<(), Failure> {
-    for (k, &ratio) in RATIOS.iter().enumerate() {
+    for &ratio in &RATIOS {
         let walk = Walk::new(Version::NonTerminating, Uniform::new(ratio).map_err(Failure::refused)?);
-        let growth = second_moment_growth(volume, &walk, &mut Seeded::new(run.seed(part, k as u64)));
+        let mut source = Seeded::new(run.seed(format_args!("growth/{medium}/{ratio}")));
+        let growth = second_moment_growth(volume, &walk, &mut source);
         if let Some(growth) = growth {
             rows.push(Row { medium, ratio, growth, closed_form: closed_form(ratio) });
         }
@@ -94,70 +94,58 @@ fn measure<M: Medium, P: PhaseFunction>(
 }
 
 fn section(rows: &[Row]) -> Section {
-    let mut section = Section::new("growth", "Where a walk has a second moment");
-    section.text = vec![
-        "The sampling extinction is free for transmittance, not for walks. Per collision the squared energy of the non-terminating \
+    let text = "The sampling extinction is free for transmittance, not for walks. Per collision the squared energy of the non-terminating \
          version grows by q_sum² = (a r + |1 − r|)², above 1 where r > 2/(1 + a). Whether the second moment of a pixel exists is a question \
          of criticality: the growth from collision to collision, leaking out of the bounds included, must stay below 1. It is measured by \
          power iteration on populations of particles. Where it is above 1 there is no second moment, later no first one: a mean squared \
          error measured there is a number about the sample, not about the estimator. `harness render` refuses such a walk unless told \
-         otherwise, and warns where the measurement cannot tell."
-            .to_owned(),
-    ];
-    let mut chart = Chart::new(
-        "growth-factor",
-        "Growth of the squared energy per collision",
-        Axis::logarithmic("σ_samp / greatest σ_t [1]"),
-        Axis::logarithmic("growth per collision [1]"),
-    );
-    chart.caption =
-        "Albedo 0.7, non-terminating. Above 1 there is no second moment. The line is (a r + |1 − r|)²."
-            .to_owned();
+         otherwise, and warns where the measurement cannot tell.";
     let mut media: Vec<&str> = rows.iter().map(|row| row.medium).collect();
     media.dedup();
-    chart.curves = media
-        .iter()
-        .map(|&medium| {
-            let of_medium = || rows.iter().filter(move |row| row.medium == medium);
-            let marks = of_medium().map(|row| {
-                let margin = 1.96 * row.growth.standard_error;
-                let (low, high) = (row.growth.factor - margin, row.growth.factor + margin);
-                Mark::measured(row.ratio, row.growth.factor, [low.max(f64::MIN_POSITIVE), high])
-            });
-            let line: Vec<(f64, f64)> =
-                of_medium().filter_map(|row| Some((row.ratio, row.closed_form?))).collect();
-            Curve::method(medium).with_line(line).with_marks(marks)
-        })
-        .collect();
-    chart.curves.push(Curve::reference("growth 1", [(RATIOS[0], 1.0), (RATIOS[RATIOS.len() - 1], 1.0)]));
-    chart.verticals = vec![Vertical { x: 0.85, label: "r = 2/(1 + a)".to_owned() }];
-    section.charts = vec![chart];
-    let mut table = Table::new(
-        "growth-table",
-        "Growth per collision",
-        "",
+    let curve = |medium: &str| {
+        let of_medium = || rows.iter().filter(|row| row.medium == medium);
+        let marks = of_medium().map(|row| {
+            let Measured { value, interval: [low, high] } = row.factor();
+            Measured { value, interval: [low.max(f64::MIN_POSITIVE), high] }.mark(row.ratio)
+        });
+        let line = of_medium().filter_map(|row| Some((row.ratio, row.closed_form?)));
+        Curve::method(medium).with_line(line).with_marks(marks)
+    };
+    let one = Curve::reference("growth 1", [(RATIOS[0], 1.0), (RATIOS[RATIOS.len() - 1], 1.0)]);
+    let chart = Chart {
+        caption:
+            "Albedo 0.7, non-terminating. Above 1 there is no second moment. The line is (a r + |1 − r|)²."
+                .to_owned(),
+        curves: media.into_iter().map(curve).chain([one]).collect(),
+        verticals: vec![Vertical { x: 0.85, label: "r = 2/(1 + a)".to_owned() }],
+        ..Chart::new(
+            "growth-factor",
+            "Growth of the squared energy per collision",
+            Axis::logarithmic("σ_samp / greatest σ_t [1]"),
+            Axis::logarithmic("growth per collision [1]"),
+        )
+    };
+    let table = Table::of(
+        ["growth-table", "Growth per collision", ""],
+        rows,
         &[
-            ("medium", ""),
-            ("σ_samp / greatest σ_t", "1"),
-            ("growth", "1"),
-            ("closed form", "1"),
-            ("second moment", ""),
+            ("medium", "", &|row| Cell::text(row.medium)),
+            ("σ_samp / greatest σ_t", "1", &|row| Cell::Number(row.ratio)),
+            ("growth", "1", &|row| row.factor().cell()),
+            ("closed form", "1", &|row| Cell::maybe(row.closed_form)),
+            ("second moment", "", &|row| {
+                Cell::text(match row.growth.criticality() {
+                    Criticality::Subcritical => "exists",
+                    Criticality::Unclear => "this measurement cannot tell",
+                    Criticality::Supercritical => "none",
+                })
+            }),
         ],
     );
-    for row in rows {
-        let margin = 1.96 * row.growth.standard_error;
-        table.rows.push(vec![
-            Cell::text(row.medium),
-            Cell::Number(row.ratio),
-            Cell::measured(row.growth.factor, [row.growth.factor - margin, row.growth.factor + margin]),
-            Cell::maybe(row.closed_form),
-            Cell::text(match row.growth.criticality() {
-                Criticality::Subcritical => "exists",
-                Criticality::Unclear => "this measurement cannot tell",
-                Criticality::Supercritical => "none",
-            }),
-        ]);
+    Section {
+        text: vec![text.to_owned()],
+        charts: vec![chart],
+        tables: vec![table],
+        ..Section::new("growth", "Where a walk has a second moment")
     }
-    section.tables = vec![table];
-    section
 }

@@ -7,35 +7,26 @@ mod scenes;
 mod speed;
 mod versions;
 
-use crate::report::document::{Document, Options};
+use crate::Failure;
+use crate::report::document::Document;
 use crate::report::run::Run;
-use crate::{Environment, Failure};
-use std::time::Instant;
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 4;
 
 /// Measures the report, on the threads of the current pool.
-pub(crate) fn document(options: &Options, environment: &Environment) -> Result<Document, Failure> {
-    let clock = Instant::now();
-    let steps = versions::steps() * 2 + equal_cost::steps() + speed::steps() + growth::steps();
-    let run = Run::new(options, environment, steps);
-    let even = versions::study(&run, versions::Lighting::Even)?;
-    let sun = versions::study(&run, versions::Lighting::Sun)?;
-    let noise = equal_cost::study(&run)?;
-    let speed = speed::study(&run)?;
-    let growth = growth::study(&run)?;
-    run.finish();
-    let mut document = Document::new(
-        "particle-tracing",
-        "Particle tracing with any sampling extinction",
-        options,
-        environment.provenance(options.seed),
-    );
-    document.claims = vec![claims::s5(&even, &sun), claims::s6(&noise)];
-    document.summary = claims::summary(&even, &sun, &noise, &speed);
-    document.unsound = growth.unsound;
-    document.sections = vec![even.section, sun.section, noise.section, speed.section, growth.section];
-    document.seconds = clock.elapsed().as_secs_f64();
-    Ok(document)
+pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
+    run.expect(versions::steps() * 2 + equal_cost::steps() + speed::steps() + growth::steps());
+    let even = versions::study(run, &versions::EVEN)?;
+    let sun = versions::study(run, &versions::SUN)?;
+    let noise = equal_cost::study(run)?;
+    let speed = speed::study(run)?;
+    let growth = growth::study(run)?;
+    Ok(Document {
+        claims: vec![claims::s5(&even, &sun), claims::s6(&noise)],
+        summary: claims::summary(&even, &sun, &noise, &speed),
+        unsound: growth.unsound,
+        sections: vec![even.section, sun.section, noise.section, speed.section, growth.section],
+        ..run.document("Particle tracing with any sampling extinction")
+    })
 }

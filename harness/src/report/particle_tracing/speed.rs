@@ -38,5 +38,5 @@ pub(super) fn study(run: &Run<'_>) -> Result<Speed, Failure> {
     let subject = scenes::evenly_lit(run.resolution());
     let text = "The scene of fig. 6 in an even environment, by every integrator of multiple scattering. Seconds are CPU seconds over all \
                 threads, look-ups counted; the figures of the table are those of the largest number of rays.";
-    compare(run, (&subject, 30), integrators(), &RAYS, text)
+    compare(run, &subject, integrators(), &RAYS, text)
 }

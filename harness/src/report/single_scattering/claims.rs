@@ -1,6 +1,6 @@
 //! S9 of the ledger, and the findings of the report.
 
-use super::Lighting;
+use super::POINT;
 use super::equal_cost::{Budget, Study};
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::speed::Speed;
@@ -13,7 +13,7 @@ const MIS: &str = "source and scattering";
 /// Criterion: under the strong point light one of them has the least error of all unbiased methods at both budgets, or none is separable
 /// from it by the 95 % intervals.
 pub(super) fn s9(studies: &[Study]) -> Claim {
-    let point = studies.iter().find(|study| study.lighting == Lighting::Point);
+    let point = studies.iter().find(|study| study.lighting.id == POINT.id);
     let budgets: &[Budget] = point.map_or(&[], |study| &study.budgets);
     let wins = |budget: &&Budget| {
         budget.entries.iter().filter(|entry| entry.name.starts_with(MIS)).any(|mis| {
@@ -26,29 +26,25 @@ pub(super) fn s9(studies: &[Study]) -> Claim {
             .ranking()
             .iter()
             .take(5)
-            .map(|entry| {
-                let [low, high] = entry.rmse.interval;
-                format!("{} {:.4} [{low:.4}, {high:.4}]", entry.name, entry.rmse.value)
-            })
+            .map(|entry| format!("{} {}", entry.name, entry.rmse.words(4)))
             .collect();
         format!("{} look-ups: {}", budget.lookups, ranked.join(", "))
     };
-    Claim {
-        id: "S9".to_owned(),
-        claim: "At about 300 and 50 look-ups per pixel, MIS of source-driven and scattering-driven sampling wins where the point light \
-                dominates"
-            .to_owned(),
-        source: "szirmay-kalos-2017 fig. 12".to_owned(),
-        measured: budgets.iter().map(words).collect::<Vec<_>>().join("; "),
-        verdict: match won {
-            0 => ClaimVerdict::DoesNotHold,
-            n if n == budgets.len() => ClaimVerdict::Holds,
-            _ => ClaimVerdict::HoldsUnder,
-        },
-        comment: "RMSE of the unbiased methods, least first. What wins depends on what a look-up costs beside a camera ray: attenuation-driven \
-                  sampling reuses those of the walk."
-            .to_owned(),
-    }
+    let verdict = match won {
+        0 => ClaimVerdict::DoesNotHold,
+        n if n == budgets.len() => ClaimVerdict::Holds,
+        _ => ClaimVerdict::HoldsUnder,
+    };
+    Claim::new(
+        ("S9", "szirmay-kalos-2017 fig. 12"),
+        "At about 300 and 50 look-ups per pixel, MIS of source-driven and scattering-driven sampling wins where the point light dominates",
+        budgets.iter().map(words).collect::<Vec<_>>().join("; "),
+        (
+            verdict,
+            "RMSE of the unbiased methods, least first. What wins depends on what a look-up costs beside a camera ray: attenuation-driven \
+             sampling reuses those of the walk.",
+        ),
+    )
 }
 
 /// The findings, in words.
@@ -58,13 +54,11 @@ pub(super) fn summary(studies: &[Study], speed: &Speed) -> Vec<String> {
         for budget in &study.budgets {
             let best = budget.ranking()[0];
             summary.push(format!(
-                "{} look-ups per pixel under {}: least error {} with {:.4} [{:.4}, {:.4}].",
+                "{} look-ups per pixel under {}: least error {} with {}.",
                 budget.lookups,
-                study.lighting.words(),
+                study.lighting.words,
                 best.name,
-                best.rmse.value,
-                best.rmse.interval[0],
-                best.rmse.interval[1]
+                best.rmse.words(4)
             ));
         }
     }

@@ -1,17 +1,19 @@
 //! Fig. 12: all methods at equal look-ups per pixel.
 
 use super::methods::{self, Method};
-use super::{Lighting, REPLICAS};
+use super::{LIGHTINGS, Lighting, REPLICAS};
 use crate::Failure;
-use crate::report::document::{Cell, Gallery, GalleryRow, Picture, Pixels, Section, Table};
-use crate::report::replicas::{Measured, Replicas, Subject};
-use crate::report::run::Run;
+use crate::report::document::{Cell, Gallery, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::replicas::{Replicas, Subject};
+use crate::report::run::{Part, Run};
+use fairflight_sources::named_seed;
 
 /// Look-ups per pixel, averaged over all, as in the paper.
 pub(super) const BUDGETS: [f64; 2] = [300.0, 50.0];
 
 pub(super) fn steps() -> u64 {
-    (Lighting::ALL.len() * (1 + BUDGETS.len() * methods::all(1.0).len())) as u64
+    (LIGHTINGS.len() * (1 + BUDGETS.len() * methods::all(1.0).len())) as u64
 }
 
 /// One method at one budget.
@@ -42,11 +44,10 @@ impl Budget {
 /// What one lighting came to.
 #[derive(Debug)]
 pub(super) struct Study {
-    pub(super) lighting: Lighting,
+    pub(super) lighting: &'static Lighting,
     pub(super) budgets: Vec<Budget>,
-    pub(super) section: Section,
-    /// Unbiased methods whose mean image is not that of the closed form.
-    pub(super) unsound: Vec<String>,
+    /// Section, and unbiased methods whose mean image is not that of the closed form.
+    pub(super) part: Part,
 }
 
 /// The exact image and its mean squared error.
@@ -56,25 +57,23 @@ struct Reference {
     shown: Replicas,
 }
 
-pub(super) fn study(run: &Run<'_>, lighting: Lighting) -> Result<Study, Failure> {
+pub(super) fn study(run: &Run<'_>, lighting: &'static Lighting) -> Result<Study, Failure> {
     let subject = lighting.subject(run.resolution());
     let exact = methods::closed_form("closed form", 32);
-    let rays = if run.options.quick { 8 } else { 64 };
-    let shown = subject.with("integrator", exact.integrator).measure(
-        rays,
-        (run.seed(lighting as u64, 0), REPLICAS),
-        &run.media,
-    )?;
+    let rays = run.quick_or(8, 64);
+    let seed = run.seed(format_args!("equal-cost/{}/closed form", lighting.id));
+    let closed = subject.with("integrator", exact.integrator);
+    let shown = closed.measure(rays, (seed, REPLICAS), &run.media)?;
     run.advance();
     let (pixels, squared_error) = shown.mean();
     let reference = Reference { pixels, squared_error, shown };
     let (mut budgets, mut unsound) = (Vec::new(), Vec::new());
-    for (b, &lookups) in BUDGETS.iter().enumerate() {
+    for lookups in BUDGETS {
         let mut entries = Vec::new();
         // Rays that miss the medium look nothing up: the others may spend their share.
         let per_ray = lookups / share_that_meets(&reference);
-        for (m, method) in methods::all(per_ray).into_iter().enumerate() {
-            let seed = run.seed(10 + lighting as u64, (b * 100 + m) as u64);
+        for method in methods::all(per_ray) {
+            let seed = run.seed(format_args!("equal-cost/{}/{lookups}/{}", lighting.id, method.name));
             let entry = entry(run, &subject, method, (lookups, seed), &reference)?;
             unsound.extend(bias(&entry, &reference, lighting));
             entries.push(entry);
@@ -82,8 +81,8 @@ pub(super) fn study(run: &Run<'_>, lighting: Lighting) -> Result<Study, Failure>
         }
         budgets.push(Budget { lookups, entries });
     }
-    let section = section(run, lighting, &budgets, &reference);
-    Ok(Study { lighting, budgets, section, unsound })
+    let part = Part { section: section(run, lighting, &budgets, &reference), unsound };
+    Ok(Study { lighting, budgets, part })
 }
 
 /// The share of pixels whose rays look anything up: those of the disc that the sphere of eq. 21 fills, by the look-ups of the exact
@@ -105,7 +104,7 @@ fn entry(
     let rays = if method.is_baseline {
         1
     } else {
-        let pilot = subject.render(2, !seed, &run.media)?;
+        let pilot = subject.render(2, named_seed(seed, "pilot"), &run.media)?;
         (2.0 * lookups / pilot.lookups_per_pixel()).round().max(1.0) as u32
     };
     let image = subject.measure(rays, (seed, REPLICAS), &run.media)?;
@@ -114,7 +113,7 @@ fn entry(
 }
 
 /// Five standard errors between the mean radiances of an unbiased method and of the closed form are one too many.
-fn bias(entry: &Entry, reference: &Reference, lighting: Lighting) -> Option<String> {
+fn bias(entry: &Entry, reference: &Reference, lighting: &Lighting) -> Option<String> {
     if entry.is_baseline {
         return None;
     }
@@ -131,18 +130,14 @@ fn bias(entry: &Entry, reference: &Reference, lighting: Lighting) -> Option<Stri
         format!(
             "{} under {}: mean radiance off by {difference:.2e}, {:.1} standard errors",
             entry.name,
-            lighting.id(),
+            lighting.id,
             difference / standard_error
         )
     })
 }
 
-fn section(run: &Run<'_>, lighting: Lighting, budgets: &[Budget], reference: &Reference) -> Section {
-    let mut section = Section::new(
-        &format!("{}-equal-cost", lighting.id()),
-        &format!("Fig. 12: equal look-ups per pixel, {}", lighting.words()),
-    );
-    section.text = vec![format!(
+fn section(run: &Run<'_>, lighting: &Lighting, budgets: &[Budget], reference: &Reference) -> Section {
+    let text = format!(
         "szirmay-kalos-2017 eq. 21 with albedo 0.7 and Rayleigh scattering, the light in its center, {0} x {0} pixels. Each method spends \
          the same number of look-ups per pixel on average over all pixels, on as many camera rays as that gives. Tracking of the camera \
          ray has σ_samp = 0.5 and 16 explorers, shared by four rays in a row; shadow rays are ratio tracking at 0.8. Ray marching has one ray \
@@ -151,9 +146,16 @@ fn section(run: &Run<'_>, lighting: Lighting, budgets: &[Budget], reference: &Re
         run.resolution(),
         reference.squared_error.sqrt(),
         REPLICAS
-    )];
+    );
+    let mut section = Section {
+        text: vec![text],
+        ..Section::new(
+            &format!("{}-equal-cost", lighting.id),
+            &format!("Fig. 12: equal look-ups per pixel, {}", lighting.words),
+        )
+    };
     for budget in budgets {
-        let id = format!("{}-{}", lighting.id(), budget.lookups);
+        let id = format!("{}-{}", lighting.id, budget.lookups);
         section.tables.push(table(&id, budget));
         section.galleries.push(gallery(&id, lighting, budget, reference));
     }
@@ -161,53 +163,28 @@ fn section(run: &Run<'_>, lighting: Lighting, budgets: &[Budget], reference: &Re
 }
 
 fn table(id: &str, budget: &Budget) -> Table {
-    let mut table = Table::new(
-        &format!("{id}-table"),
-        &format!("{} look-ups per pixel", budget.lookups),
-        "",
+    Table::of(
+        [&format!("{id}-table"), &format!("{} look-ups per pixel", budget.lookups), ""],
+        &budget.entries,
         &[
-            ("method", ""),
-            ("camera rays per pixel", "1"),
-            ("look-ups per pixel", "1"),
-            ("RMSE", "radiance"),
-            ("CPU seconds of an image", "s"),
+            ("method", "", &|entry| Cell::text(entry.name)),
+            ("camera rays per pixel", "1", &|entry| Cell::Count(entry.image.rays_per_pixel().into())),
+            ("look-ups per pixel", "1", &|entry| Cell::Number(entry.image.lookups_per_pixel())),
+            ("RMSE", "radiance", &|entry| entry.rmse.cell()),
+            ("CPU seconds of an image", "s", &|entry| Cell::Number(entry.image.seconds())),
         ],
-    );
-    for entry in &budget.entries {
-        table.rows.push(vec![
-            Cell::text(entry.name),
-            Cell::Count(u64::from(entry.image.rays_per_pixel())),
-            Cell::Number(entry.image.lookups_per_pixel()),
-            Cell::measured(entry.rmse.value, entry.rmse.interval),
-            Cell::Number(entry.image.seconds()),
-        ]);
-    }
-    table
+    )
 }
 
-fn gallery(id: &str, lighting: Lighting, budget: &Budget, reference: &Reference) -> Gallery {
-    let picture = |id: String, label: &str, lines: Vec<String>, image: &Replicas| Picture {
-        id,
-        label: label.to_owned(),
-        lines,
-        resolution: image.first().resolution(),
-        pixels: Pixels::Radiance { values: image.first().means().to_vec(), exposure: lighting.exposure() },
-    };
-    let mut pictures = vec![picture(
-        format!("{id}-exact"),
-        "closed form",
-        vec![format!("RMSE {:.1e}", reference.squared_error.sqrt())],
-        &reference.shown,
-    )];
-    pictures.extend(budget.entries.iter().enumerate().map(|(m, entry)| {
+fn gallery(id: &str, lighting: &Lighting, budget: &Budget, reference: &Reference) -> Gallery {
+    let lines = vec![format!("RMSE {:.1e}", reference.squared_error.sqrt())];
+    let exact = reference.shown.picture(format!("{id}-exact"), "closed form", lines, lighting.exposure);
+    let others = budget.entries.iter().enumerate().map(|(m, entry)| {
         let lines =
             vec![format!("RMSE {:.4}", entry.rmse.value), format!("{} rays", entry.image.rays_per_pixel())];
-        picture(format!("{id}-{m}"), entry.name, lines, &entry.image)
-    }));
-    Gallery {
-        id: format!("{id}-images"),
-        title: format!("The images at {} look-ups per pixel", budget.lookups),
-        caption: "One image of each measurement.".to_owned(),
-        rows: vec![GalleryRow { label: String::new(), pictures }],
-    }
+        entry.image.picture(format!("{id}-{m}"), entry.name, lines, lighting.exposure)
+    });
+    let row = (String::new(), [exact].into_iter().chain(others).collect());
+    let title = format!("The images at {} look-ups per pixel", budget.lookups);
+    Gallery::of_images(&format!("{id}-images"), &title, vec![row])
 }

@@ -1,6 +1,6 @@
 //! Speed against error of all methods.
 
-use super::Lighting;
+use super::POINT;
 use super::methods::{self, Method};
 use crate::Failure;
 use crate::report::run::Run;
@@ -22,10 +22,10 @@ pub(super) fn steps() -> u64 {
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Speed, Failure> {
-    let subject = Lighting::Point.subject(run.resolution());
+    let subject = POINT.subject(run.resolution());
     let text = "The scene with the strong point light. The error is the sample variance of a pixel over its number of rays, averaged over \
                 all pixels. Transmittance in closed form costs no look-up and has no variance; what remains is where along the ray \
                 scattering is evaluated, and stratified samples of a smooth integrand settle that faster than 1/√n.";
     let integrators = compared().into_iter().map(|method| (method.name, method.integrator)).collect();
-    compare(run, (&subject, 40), integrators, &RAYS, text)
+    compare(run, &subject, integrators, &RAYS, text)
 }

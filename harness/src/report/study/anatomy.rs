@@ -2,7 +2,7 @@
 
 use super::laws::SharedLaws;
 use super::walk::{WALK_EXPLORERS, distances, looked_up, trace, walker};
-use super::{Run, Study, Subject};
+use super::{Run, Subject};
 use crate::Failure;
 use crate::report::result::Anatomy;
 use fairflight_media::{Extinction, OpticalThickness};
@@ -16,7 +16,7 @@ pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<
     let sigma_samp = subject.walk_sampling;
     let walker = walker(subject, WALK_EXPLORERS, sigma_samp)?;
     let control = walker.control();
-    let source = Seeded::new(run.seed(subject, Study::Anatomy, 0));
+    let source = Seeded::new(run.seed(format_args!("anatomy/{}", subject.id)));
     let walk = trace(subject, &walker, 1, source).remove(0);
     let running = laws.running(subject, control, sigma_samp);
     let s = distances(subject.facts.length, POINTS);

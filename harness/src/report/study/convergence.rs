@@ -6,9 +6,10 @@ use super::marching;
 use super::preparation::preparation_seconds;
 use super::series::{EXPLORERS, Entry, SPLITS};
 use super::sweep::log10_relative_mse;
-use super::{Effort, Run, Study, Subject};
+use super::{Effort, Run, Subject};
 use crate::Failure;
 use crate::estimator::{EstimatorSpec, RayMarchingSpec};
+use crate::parallel::try_in_parallel;
 use crate::plan::Plan;
 use crate::reference::explain;
 use crate::report::result::{ConvergenceCurve, ConvergencePoint, Series, SweepCurve};
@@ -16,7 +17,7 @@ use cpu_time::ThreadTime;
 use fairflight_collision::Albedo;
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{Offset, Theory};
-use rayon::prelude::*;
+use std::fmt::Debug;
 
 /// Replicas of one point: enough for an interval, and not more than a cheap point needs.
 const REPLICAS: (f64, f64) = (64.0, 1024.0);
@@ -55,20 +56,20 @@ pub(super) fn curves(
         let steps = (1..).map(|k| 1 << k).take_while(|steps| *steps <= run.effort.most_steps);
         tasks.extend(steps.map(|steps| (lines.len() + i, Task::March { offset, steps })));
     }
-    let points: Vec<Result<(usize, ConvergencePoint), Failure>> = tasks
-        .into_par_iter()
-        .enumerate()
-        .map(|(i, (curve, task))| {
-            let seed = run.seed(subject, Study::Convergence, i as u64);
-            let point = match task {
-                Task::Mean { line, estimates, replicas } => {
-                    mean_point(subject, line, estimates, replicas, seed)
-                }
-                Task::March { offset, steps } => march_point(subject, offset, steps, seed),
-            };
-            Ok((curve, point?))
-        })
-        .collect();
+    let seed =
+        |name: &dyn Debug, point: u64| run.seed(format_args!("convergence/{}/{name:?}/{point}", subject.id));
+    let points = try_in_parallel(tasks.len(), &|i| {
+        let (curve, ref task) = tasks[i];
+        let point = match *task {
+            Task::Mean { line, estimates, replicas } => {
+                mean_point(subject, line, estimates, replicas, seed(&line.series, estimates))
+            }
+            Task::March { offset, steps } => {
+                march_point(subject, offset, steps, seed(&offset, u64::from(steps)))
+            }
+        };
+        Ok((curve, point?))
+    })?;
     run.bar.inc(steps(&run.effort));
     let mut curves: Vec<ConvergenceCurve> = lines
         .iter()
@@ -79,8 +80,7 @@ pub(super) fn curves(
         ])
         .map(|(series, parameters)| ConvergenceCurve { series, parameters, points: Vec::new() })
         .collect();
-    for point in points {
-        let (curve, point) = point?;
+    for (curve, point) in points {
         curves[curve].points.push(point);
     }
     Ok(curves)

@@ -2,7 +2,7 @@
 
 use super::laws::SharedLaws;
 use super::walk::{WALK_EXPLORERS, distances, trace, walker};
-use super::{Run, Study, Subject};
+use super::{Run, Subject};
 use crate::Failure;
 use crate::report::result::SampleFunctions;
 use fairflight_media::OpticalThickness;
@@ -17,7 +17,7 @@ const FUNCTIONS: usize = 8;
 pub(super) fn of(run: &Run<'_>, subject: &Subject, laws: &SharedLaws) -> Result<SampleFunctions, Failure> {
     let sigma_samp = subject.walk_sampling;
     let walker = walker(subject, WALK_EXPLORERS, sigma_samp)?;
-    let source = Seeded::new(run.seed(subject, Study::Functions, 0));
+    let source = Seeded::new(run.seed(format_args!("functions/{}", subject.id)));
     let walks = trace(subject, &walker, FUNCTIONS, source);
     let running = laws.running(subject, walker.control(), sigma_samp);
     let s = distances(subject.facts.length, POINTS);

@@ -1,6 +1,6 @@
 //! 95 % intervals of a root mean squared error.
 
-use fairflight_sources::{Seeded, UniformSource};
+use crate::comparison::bootstrap_mean;
 
 /// The two-sided 95 % quantile of the normal law.
 const Z: f64 = 1.96;
@@ -34,30 +34,16 @@ fn chi_square_quantile(degrees: f64, p: f64) -> f64 {
     cube_root.max(2.0 * (0.8856 * p).powf(2.0 / degrees))
 }
 
-/// Resamples of a bootstrap.
-const RESAMPLES: usize = 400;
-
 /// The percentile bootstrap interval of the root of a mean of squared errors over pixels.
 pub(super) fn bootstrap_rmse(squared_errors: &[f64], seed: u64) -> [f64; 2] {
-    let n = squared_errors.len();
-    if n == 0 {
-        return [0.0, 0.0];
-    }
-    let mut source = Seeded::new(seed);
-    let mut means: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            let sum: f64 = (0..n).map(|_| squared_errors[(source.next_uniform() * n as f64) as usize]).sum();
-            sum / n as f64
-        })
-        .collect();
-    means.sort_unstable_by(f64::total_cmp);
-    let at = |p: f64| means[(p * (RESAMPLES - 1) as f64).round() as usize].sqrt();
-    [at(0.025), at(0.975)]
+    const RESAMPLES: usize = 400;
+    bootstrap_mean(squared_errors, RESAMPLES, seed).map(f64::sqrt)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fairflight_sources::{Seeded, UniformSource};
 
     #[test]
     fn chi_square_quantiles_of_tables() {

@@ -27,9 +27,10 @@ use crate::field::MediumLibrary;
 use crate::report::result::{MediumReport, Report};
 use crate::{Environment, Failure};
 use effort::Effort;
-use fairflight_sources::derive_seed;
+use fairflight_sources::named_seed;
 use indicatif::ProgressBar;
 use laws::SharedLaws;
+use std::fmt::Display;
 use std::time::Instant;
 use subject::Subject;
 
@@ -93,21 +94,10 @@ struct Run<'a> {
     bar: &'a ProgressBar,
 }
 
-/// The studies that draw, each with streams of its own.
-#[derive(Clone, Copy, Debug)]
-enum Study {
-    Sweep,
-    Convergence,
-    Anatomy,
-    Functions,
-    Images,
-    Claims,
-}
-
 impl Run<'_> {
-    /// The seed of one point: a stream that no other point of the report shares.
-    fn seed(&self, subject: &Subject, study: Study, point: u64) -> u64 {
-        derive_seed(derive_seed(derive_seed(self.seed, subject.index), study as u64), point)
+    /// The seed of the stream of this name, "study/subject/estimator/point".
+    fn seed(&self, name: impl Display) -> u64 {
+        named_seed(self.seed, &format!("report/standard/{name}"))
     }
 
     fn advance(&self) {

@@ -74,6 +74,14 @@ impl Entry {
         }
     }
 
+    /// Its name among all entries, for the streams of its points.
+    pub(super) fn name(&self) -> String {
+        match self.albedo {
+            Some(albedo) => format!("{:?} of albedo {albedo}", self.series),
+            None => format!("{:?}", self.series),
+        }
+    }
+
     /// The parameters in words.
     pub(super) fn parameters(&self) -> String {
         match (self.series, self.albedo) {
@@ -87,5 +95,18 @@ impl Entry {
             (_, Some(albedo)) => format!("albedo {albedo}"),
             (_, None) => String::new(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_not_shared() {
+        let mut names: Vec<String> = all().iter().map(Entry::name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), all().len());
     }
 }

@@ -27,8 +27,6 @@ pub(super) struct Subject {
     pub(super) lookup_nanoseconds: f64,
     /// The sampling extinction of the walks that are shown one by one (fig. 5 and 8) \[1/length\].
     pub(super) walk_sampling: f64,
-    /// The number of this subject, from which its seeds are derived.
-    pub(super) index: u64,
 }
 
 /// The seed ray of the analytic medium runs through its center.
@@ -54,7 +52,7 @@ pub(super) fn analytic(library: &MediumLibrary) -> Result<Subject, Failure> {
                           the z axis through the center"
                     .to_owned(),
         },
-        Ranking { index: 0, lookup_nanoseconds: 30.0, walk_sampling: Some(0.4) },
+        Ranking { lookup_nanoseconds: 30.0, walk_sampling: Some(0.4) },
         &spec,
         library,
         |_| AXIS,
@@ -76,7 +74,7 @@ pub(super) fn perlin(library: &MediumLibrary) -> Result<Subject, Failure> {
                  every lattice line"
             ),
         },
-        Ranking { index: 1, lookup_nanoseconds: 420.0, walk_sampling: Some(0.4) },
+        Ranking { lookup_nanoseconds: 420.0, walk_sampling: Some(0.4) },
         &spec,
         library,
         |_| OBLIQUE,
@@ -99,7 +97,7 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
                  longest axis"
             ),
         },
-        Ranking { index: 2, lookup_nanoseconds: 60.0, walk_sampling: None },
+        Ranking { lookup_nanoseconds: 60.0, walk_sampling: None },
         volume.medium().kind(),
         library,
         through_the_middle,
@@ -140,7 +138,6 @@ struct Names {
 /// What [`Subject`] says of these.
 #[derive(Clone, Copy)]
 struct Ranking {
-    index: u64,
     lookup_nanoseconds: f64,
     /// By default 0.4 of the majorant.
     walk_sampling: Option<f64>,
@@ -155,7 +152,7 @@ impl Subject {
         ray: impl Fn(&Bounds) -> (DVec3, DVec3),
     ) -> Result<Self, Failure> {
         let Names { id, title, description } = names;
-        let Ranking { index, lookup_nanoseconds, walk_sampling } = ranking;
+        let Ranking { lookup_nanoseconds, walk_sampling } = ranking;
         let (medium, bounds) = spec.build(library, "profile.medium")?;
         let (origin, direction) = ray(&bounds);
         let clip = bounds.clip(origin, direction, None).map_err(|error| in_subject(id, error))?;
@@ -198,7 +195,6 @@ impl Subject {
             majorant,
             lookup_nanoseconds,
             walk_sampling: walk_sampling.unwrap_or(0.4 * majorant),
-            index,
         })
     }
 }

@@ -4,17 +4,17 @@ use super::effort::COUNTED;
 use super::laws::SharedLaws;
 use super::preparation::preparation_seconds;
 use super::series::{Entry, all};
-use super::{Effort, Run, Study, Subject};
+use super::{Effort, Run, Subject};
 use crate::Failure;
 use crate::experiment::{compare, measure_plan};
 use crate::measure::Measurement;
+use crate::parallel::try_in_parallel;
 use crate::plan::Plan;
 use crate::reference::Prediction;
 use crate::report::result::{SweepCurve, SweepMeasurement, SweepPoint};
 use fairflight_collision::Albedo;
 use fairflight_stats::{ClosedMoments, DEFAULT_ALPHA, MeanTest, NormalApproximation};
 use fairflight_transmittance::Theory;
-use rayon::prelude::*;
 use std::f64::consts::LN_10;
 
 /// The sweep goes from 1/8 of the majorant to 8 times the majorant.
@@ -28,32 +28,24 @@ pub(super) fn curves(
 ) -> Result<Vec<SweepCurve>, Failure> {
     let sigmas = sampling_extinctions(subject, &run.effort);
     let entries = all();
-    let tasks: Vec<(usize, usize)> =
-        (0..entries.len()).flat_map(|entry| (0..sigmas.len()).map(move |i| (entry, i))).collect();
-    let points: Vec<Result<SweepPoint, Failure>> = tasks
-        .into_par_iter()
-        .map(|(entry, i)| {
-            let seed = run
-                .effort
-                .measures(i)
-                .then(|| run.seed(subject, Study::Sweep, (entry * sigmas.len() + i) as u64));
-            let point = point(run, subject, laws, entries[entry], sigmas[i], seed);
-            run.advance();
-            point
-        })
-        .collect();
+    let points = try_in_parallel(entries.len() * sigmas.len(), &|task| {
+        let (entry, i) = (entries[task / sigmas.len()], task % sigmas.len());
+        // Six digits name a point: those of other numbers of points that are the same are not off by a rounding.
+        let (name, factor) = (entry.name(), sigmas[i] / subject.majorant);
+        let seed =
+            run.effort.measures(i).then(|| run.seed(format_args!("sweep/{}/{name}/{factor:.6}", subject.id)));
+        let point = point(run, subject, laws, entry, sigmas[i], seed);
+        run.advance();
+        point
+    })?;
     let mut points = points.into_iter();
-    entries
-        .iter()
-        .map(|entry| {
-            Ok(SweepCurve {
-                series: entry.series,
-                parameters: entry.parameters(),
-                albedo: entry.albedo.map(Albedo::get),
-                points: points.by_ref().take(sigmas.len()).collect::<Result<_, _>>()?,
-            })
-        })
-        .collect()
+    let curve = |entry: &Entry| SweepCurve {
+        series: entry.series,
+        parameters: entry.parameters(),
+        albedo: entry.albedo.map(Albedo::get),
+        points: points.by_ref().take(sigmas.len()).collect(),
+    };
+    Ok(entries.iter().map(curve).collect())
 }
 
 /// How many points [`curves`] reports as progress.

@@ -3,12 +3,10 @@
 use super::reference::Reference;
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
-use crate::report::document::{
-    Axis, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
-};
-use crate::report::replicas::{Measured, Replicas};
+use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::replicas::Replicas;
 use crate::report::run::Run;
-use crate::report::speed::curve as joined;
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 6;
@@ -42,67 +40,66 @@ pub(super) struct Anisotropy {
 
 pub(super) fn study(run: &Run<'_>) -> Result<Anisotropy, Failure> {
     let mut points = Vec::new();
-    for (k, g) in (0..).zip(COSINES) {
+    for g in COSINES {
+        let seed = |what: &str| run.seed(format_args!("anisotropy/{g}/{what}"));
         let subject = scenes::haze(scenes::side(run), g)?;
-        let reference = Reference::of(run, &subject, REFERENCE, run.seed(70, k))?;
+        let reference = Reference::of(run, &subject, REFERENCE, seed("reference"))?;
         let choice = Choice { strategy: "one_to_one", placement: "locally_homogeneous", ..Choice::EXACT };
-        let images = subject.with("integrator", choice.lights(PATHS, 4, BOUND)).measure(
-            run.samples(SETS),
-            (run.seed(71, k), REPLICAS),
-            &run.media,
-        )?;
+        let lit = subject.with("integrator", choice.lights(PATHS, 4, BOUND));
+        let images = lit.measure(run.samples(SETS), (seed("images"), REPLICAS), &run.media)?;
         run.advance();
         let error = reference.rmse(&images).map(|rmse| rmse / reference.mean.0);
         points.push(Point { g, error, z: reference.z_of(&images), images, reference });
     }
-    let mut table = Table::new(
-        "anisotropy-table",
-        "Error by mean cosine",
-        "Relative to the mean radiance of the reference. z: in standard errors of both images.",
-        &[("g", "1"), ("RMSE / mean radiance", "1"), ("z", "1")],
-    );
-    for point in &points {
-        table.rows.push(vec![
-            Cell::Number(point.g),
-            Cell::measured(point.error.value, point.error.interval),
-            Cell::Number(point.z),
-        ]);
-    }
-    let mut chart = Chart::new(
-        "anisotropy-error",
-        "Error by mean cosine",
-        Axis::linear("mean cosine g [1]"),
-        Axis::linear("RMSE / mean radiance [1]"),
-    );
-    let marks = points.iter().map(|point| Mark::measured(point.g, point.error.value, point.error.interval));
-    chart.curves = vec![joined("1-to-1, locally homogeneous", marks.collect())];
-    let mut section = Section::new("anisotropy", "Fig. 13: backward, isotropic and forward scattering");
-    section.text = vec![format!(
+    let section = section(run, &points);
+    Ok(Anisotropy { points, section })
+}
+
+fn section(run: &Run<'_>, points: &[Point]) -> Section {
+    let text = format!(
         "Spheres in even haze (σ_t = 0.35, albedo 0.98), {} sets of {PATHS} light paths, b = {BOUND}, 1-to-1 locally homogeneous with exact \
          transmittance, {REPLICAS} independent images; references of {REFERENCE} paths per pixel.",
         run.samples(SETS)
-    )];
-    section.tables.push(table);
-    section.charts.push(chart);
-    let picture = |k: usize, point: &Point, exact: bool| {
-        let images = if exact { &point.reference.shown } else { &point.images };
-        Picture {
-            id: format!("anisotropy-{k}{}", if exact { "-reference" } else { "" }),
-            label: format!("g = {}", point.g),
-            lines: Vec::new(),
-            resolution: images.first().resolution(),
-            pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure: 1.5 },
-        }
+    );
+    let table = Table::of(
+        [
+            "anisotropy-table",
+            "Error by mean cosine",
+            "Relative to the mean radiance of the reference. z: in standard errors of both images.",
+        ],
+        points,
+        &[
+            ("g", "1", &|point| Cell::Number(point.g)),
+            ("RMSE / mean radiance", "1", &|point| point.error.cell()),
+            ("z", "1", &|point| Cell::Number(point.z)),
+        ],
+    );
+    let marks = points.iter().map(|point| point.error.mark(point.g));
+    let chart = Chart {
+        curves: vec![Curve::joined("1-to-1, locally homogeneous", marks)],
+        ..Chart::new(
+            "anisotropy-error",
+            "Error by mean cosine",
+            Axis::linear("mean cosine g [1]"),
+            Axis::linear("RMSE / mean radiance [1]"),
+        )
     };
-    let row = |label: &str, exact: bool| GalleryRow {
-        label: label.to_owned(),
-        pictures: points.iter().enumerate().map(|(k, point)| picture(k, point, exact)).collect(),
+    let row = |label: &str, suffix: &str, images: fn(&Point) -> &Replicas| {
+        let picture = |(k, point): (usize, &Point)| {
+            let id = format!("anisotropy-{k}{suffix}");
+            images(point).picture(id, format!("g = {}", point.g), Vec::new(), 1.5)
+        };
+        (label.to_owned(), points.iter().enumerate().map(picture).collect())
     };
-    section.galleries.push(Gallery {
-        id: "anisotropy-images".to_owned(),
-        title: "The images".to_owned(),
-        caption: "One image of each measurement.".to_owned(),
-        rows: vec![row("virtual point lights", false), row("path tracing", true)],
-    });
-    Ok(Anisotropy { points, section })
+    let rows = vec![
+        row("virtual point lights", "", |point| &point.images),
+        row("path tracing", "-reference", |point| &point.reference.shown),
+    ];
+    Section {
+        text: vec![text],
+        tables: vec![table],
+        charts: vec![chart],
+        galleries: vec![Gallery::of_images("anisotropy-images", "The images", rows)],
+        ..Section::new("anisotropy", "Fig. 13: backward, isotropic and forward scattering")
+    }
 }

@@ -3,10 +3,11 @@
 use super::reference::Reference;
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
-use crate::report::document::{Cell, Gallery, GalleryRow, Picture, Pixels, Section, Table};
-use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::document::{Cell, Gallery, Picture, Pixels, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 8;
@@ -53,14 +54,12 @@ pub(super) fn study(run: &Run<'_>) -> Result<Approximations, Failure> {
         &scenes::smoke_room(scenes::side(run))?,
         ("transmittance", "Fig. 5: exact and approximate transmittance to the compensation vertex"),
         [exact, Choice { transmittance: "approximate", ..exact }],
-        40,
     )?;
     let mut visibility = compare(
         run,
         &scenes::screen(scenes::side(run))?,
         ("visibility", "Fig. 8: visibility of the compensation vertex, seen and ignored"),
         [exact, Choice { visibility: "ignored", ..exact }],
-        50,
     )?;
     visibility.section.text.push(
         "The room has even smoke (σ_t = 0.6) and a thin screen under the lamp, seen from below. Where visibility is ignored the vertices of points \
@@ -79,39 +78,30 @@ fn compare(
     subject: &Subject,
     (id, title): (&str, &str),
     [with, without]: [Choice; 2],
-    seed: u64,
 ) -> Result<Difference, Failure> {
     // The same sets of lights both ways, and nothing but the compensation: the rest is the same.
     let render = |choice: Choice| {
         let mut integrator = choice.lights(PATHS, 4, BOUND);
         integrator["component"] = json!("correction");
-        let images = subject.with("integrator", integrator).measure(
-            run.samples(SETS),
-            (run.seed(seed, 0), REPLICAS),
-            &run.media,
-        );
+        let seed = run.seed(format_args!("{id}/lights"));
+        let lit = subject.with("integrator", integrator);
+        let images = lit.measure(run.samples(SETS), (seed, REPLICAS), &run.media);
         run.advance();
         images
     };
     let (exact, approximate) = (render(with)?, render(without)?);
-    let whole = Reference::of(run, subject, REFERENCE, run.seed(seed, 1))?;
+    let whole = Reference::of(run, subject, REFERENCE, run.seed(format_args!("{id}/whole")))?;
     let brightness = whole.mean.0;
     let change = approximate.measured_change(&exact).map(|change| change / brightness);
-    let relative = change.value;
-    let half = 0.5 * (change.interval[1] - change.interval[0]);
-    let blocks = blocks(&exact, &approximate);
+    let blocks = approximate.changes_of_blocks(&exact, BLOCK);
     // Two standard errors of the greatest of so many blocks are noise; four are not.
     let beyond = |&&(difference, error): &&(f64, f64)| difference.abs() > 4.0 * error;
     let greatest = blocks.iter().filter(beyond).map(|(d, _)| d.abs()).fold(0.0, f64::max) / brightness;
     let squares = blocks.iter().map(|(_, error)| error * error).sum::<f64>() / blocks.len() as f64;
     let noise = squares.sqrt() / brightness;
     let scale = 1.0 / if greatest > 0.0 { greatest } else { 4.0 * noise };
-    let picture = |name: &str, label: &str, images: &Replicas| Picture {
-        id: format!("{id}-{name}"),
-        label: label.to_owned(),
-        lines: Vec::new(),
-        resolution: images.first().resolution(),
-        pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure: super::EXPOSURE },
+    let picture = |name: &str, label: &str, images: &Replicas| {
+        images.picture(format!("{id}-{name}"), label, Vec::new(), super::EXPOSURE)
     };
     let side = scenes::side(run) as usize / BLOCK;
     let shown = Picture {
@@ -127,75 +117,70 @@ fn compare(
             scale: brightness / scale,
         },
     };
-    let mut section = Section::new(id, title);
-    section.text = vec![format!(
+    let text = format!(
         "{0} x {0} pixels in gray, the compensation alone, 1-to-1 locally homogeneous, unlimited steps, b = {BOUND}, {1} sets of {PATHS} light paths, {REPLICAS} independent \
          images each way. The mean radiance changes by {2:.2} % [{3:.2}, {4:.2}]; the greatest change of a block that is beyond four standard \
          errors is {5:.2} % of the mean radiance (noise of a block: {6:.2} %).",
         scenes::side(run),
         run.samples(SETS),
-        100.0 * relative,
-        100.0 * (relative - half),
-        100.0 * (relative + half),
+        100.0 * change.value,
+        100.0 * change.interval[0],
+        100.0 * change.interval[1],
         100.0 * greatest,
         100.0 * noise
-    )];
-    section.galleries.push(Gallery {
-        id: format!("{id}-images"),
-        title: "Both, and their difference".to_owned(),
+    );
+    let pictures = vec![
+        picture("whole", "path tracing", &whole.shown),
+        picture("exact", "exact", &exact),
+        picture("approximate", "approximated", &approximate),
+        shown,
+    ];
+    let gallery = Gallery {
         caption: "Orange: the approximation is brighter.".to_owned(),
-        rows: vec![GalleryRow {
-            label: String::new(),
-            pictures: vec![
-                picture("whole", "path tracing", &whole.shown),
-                picture("exact", "exact", &exact),
-                picture("approximate", "approximated", &approximate),
-                shown,
-            ],
-        }],
-    });
+        ..Gallery::of_images(
+            &format!("{id}-images"),
+            "Both, and their difference",
+            vec![(String::new(), pictures)],
+        )
+    };
+    let section = Section { text: vec![text], galleries: vec![gallery], ..Section::new(id, title) };
     Ok(Difference { relative: change, greatest, noise, scale, section })
-}
-
-/// The difference of the means of blocks of pixels and its standard error, from the scatter of pairs of images.
-fn blocks(exact: &Replicas, approximate: &Replicas) -> Vec<(f64, f64)> {
-    approximate.changes_of_blocks(exact, BLOCK)
 }
 
 /// How many compensation vertices of a free flight lie where something is lost.
 fn vertices(run: &Run<'_>) -> Result<(Vec<(f64, f64)>, Section), Failure> {
     let subject = scenes::smoke_room(scenes::side(run))?;
-    let mut table = Table::new(
-        "vertices-table",
-        "Compensation vertices that count",
-        "d = 1/√b bounds the region; the mean free path of the smoke is about 2.",
-        &[("b", "1/length²"), ("d", "length"), ("free flight", "1"), ("locally homogeneous", "1")],
-    );
-    let mut inside = Vec::new();
-    for (k, bound) in (0..).zip(BOUNDS) {
-        let share = |placement: &'static str, j: u64| -> Result<f64, Failure> {
-            let choice = Choice { strategy: "one_to_one", placement, ..Choice::EXACT };
-            let integrator: Value = choice.lights(PATHS, 4, bound);
-            let images =
-                subject.with("integrator", integrator).measure(4, (run.seed(60 + j, k), 2), &run.media)?;
-            Ok(images.virtual_lights().share_inside)
-        };
-        let (free, local) = (share("free_flight", 0)?, share("locally_homogeneous", 1)?);
-        inside.push((bound, free));
-        table.rows.push(vec![
-            Cell::Number(bound),
-            Cell::Number(1.0 / bound.sqrt()),
-            Cell::Number(free),
-            Cell::Number(local),
-        ]);
+    let share = |bound: f64, placement: &'static str| -> Result<f64, Failure> {
+        let seed = run.seed(format_args!("vertices/{bound}/{placement}"));
+        let choice = Choice { strategy: "one_to_one", placement, ..Choice::EXACT };
+        let lit = subject.with("integrator", choice.lights(PATHS, 4, bound));
+        Ok(lit.measure(4, (seed, 2), &run.media)?.virtual_lights().share_inside)
+    };
+    let mut shares = Vec::new();
+    for bound in BOUNDS {
+        shares.push((bound, [share(bound, "free_flight")?, share(bound, "locally_homogeneous")?]));
         run.advance();
     }
-    let mut section = Section::new("vertices", "Compensation vertices that a free flight loses");
-    section.text = vec![
-        "A vertex counts if the geometric term to it exceeds b. Beyond d it never does; with a cosine at either end it need not within d \
-         either, which is what placing within the region cannot avoid."
-            .to_owned(),
-    ];
-    section.tables.push(table);
-    Ok((inside, section))
+    let text = "A vertex counts if the geometric term to it exceeds b. Beyond d it never does; with a cosine at either end it need not within d \
+         either, which is what placing within the region cannot avoid.";
+    let table = Table::of(
+        [
+            "vertices-table",
+            "Compensation vertices that count",
+            "d = 1/√b bounds the region; the mean free path of the smoke is about 2.",
+        ],
+        &shares,
+        &[
+            ("b", "1/length²", &|(bound, _)| Cell::Number(*bound)),
+            ("d", "length", &|(bound, _)| Cell::Number(1.0 / bound.sqrt())),
+            ("free flight", "1", &|(_, [free, _])| Cell::Number(*free)),
+            ("locally homogeneous", "1", &|(_, [_, local])| Cell::Number(*local)),
+        ],
+    );
+    let section = Section {
+        text: vec![text.to_owned()],
+        tables: vec![table],
+        ..Section::new("vertices", "Compensation vertices that a free flight loses")
+    };
+    Ok((shares.into_iter().map(|(bound, [free, _])| (bound, free)).collect(), section))
 }

@@ -3,10 +3,9 @@
 use super::reference::Reference;
 use super::scenes::{self, Choice, lights};
 use crate::Failure;
-use crate::report::document::{
-    Axis, Cell, Chart, Curve, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
-};
-use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Mark, Picture, Pixels, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::replicas::Replicas;
 use crate::report::run::Run;
 use serde_json::{Value, json};
 
@@ -14,17 +13,8 @@ use serde_json::{Value, json};
 const REPLICAS: u32 = 8;
 /// Light paths of a set.
 const PATHS: u32 = 100;
-/// Light paths of the set whose splotches are shown, and points per eye ray.
-const SPLOTCH_PATHS: u32 = 200;
-const EYE_SAMPLES: u32 = 48;
 /// Sets of an image.
 const SETS: u32 = 32;
-/// Paths per pixel of the cloud.
-const REFERENCE: u32 = 512;
-/// Pixels of the scanline.
-const COLUMNS: u32 = 64;
-/// Sets and paths per pixel of the scanline.
-const LINE: (u32, u32) = (512, 65536);
 
 /// A bound that takes away what can be seen \[1/length²\].
 pub(super) const LOW_BOUND: f64 = 2.0;
@@ -86,51 +76,44 @@ pub(super) fn study(run: &Run<'_>, reference: &Reference) -> Result<Clamping, Fa
     Ok(Clamping { stages, sections: vec![splotches, scanline, energy] })
 }
 
-fn picture(id: &str, label: &str, lines: Vec<String>, images: &Replicas, exposure: f64) -> Picture {
-    Picture {
-        id: id.to_owned(),
-        label: label.to_owned(),
-        lines,
-        resolution: images.first().resolution(),
-        pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure },
-    }
-}
-
 /// Fig. 2: a cloud by path tracing, by unbounded lights, by clamped ones.
 fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
+    /// Paths per pixel of the reference, light paths of a set, points per eye ray.
+    const CLOUD: (u32, u32, u32) = (512, 200, 48);
+    const EXPOSURE: f64 = 3.0;
+    let (reference_paths, paths, eye_samples) = CLOUD;
     let subject = scenes::cloud(run.quick_or(24, 48))?;
-    let reference = Reference::of(run, &subject, REFERENCE, run.seed(20, 0))?;
-    let exposure = 3.0;
-    let paths = SPLOTCH_PATHS;
-    let energy = |images: &Replicas| images.mean_of_images().0 / reference.mean.0;
-    let mut pictures = vec![picture(
-        "splotches-reference",
-        "path tracing",
-        vec!["unbiased".to_owned()],
-        &reference.shown,
-        exposure,
-    )];
+    let reference = Reference::of(run, &subject, reference_paths, run.seed("splotches/reference"))?;
+    let unbiased = vec!["unbiased".to_owned()];
+    let mut pictures =
+        vec![reference.shown.picture("splotches-reference", "path tracing", unbiased, EXPOSURE)];
     for (id, name, clamp) in
         [("unbounded", "unbounded lights", Value::Null), ("clamped", "clamped", json!(LOW_BOUND))]
     {
-        let one_set = subject.with("integrator", lights(paths, EYE_SAMPLES, &clamp));
-        let images = one_set.measure(1, (run.seed(21, 0), 4), &run.media)?;
-        let lines = vec![format!("{:.0} % of the light", 100.0 * energy(&images))];
-        pictures.push(picture(&format!("splotches-{id}"), name, lines, &images, exposure));
+        let one_set = subject.with("integrator", lights(paths, eye_samples, &clamp));
+        let images = one_set.measure(1, (run.seed("splotches/lights"), 4), &run.media)?;
+        let share = images.mean_of_images().0 / reference.mean.0;
+        let lines = vec![format!("{:.0} % of the light", 100.0 * share)];
+        pictures.push(images.picture(format!("splotches-{id}"), name, lines, EXPOSURE));
         run.advance();
     }
-    let mut section = Section::new("splotches", "Fig. 2: splotches, or too little light");
-    section.text = vec![format!(
-        "A cloud of Perlin noise lit by a small lamp, one and the same set of {paths} light paths, {EYE_SAMPLES} points per eye ray, b = {LOW_BOUND}. Unbounded lights \
+    let text = format!(
+        "A cloud of Perlin noise lit by a small lamp, one and the same set of {paths} light paths, {eye_samples} points per eye ray, b = {LOW_BOUND}. Unbounded lights \
          have no second moment in a medium: their error is shown by eye only, an interval would mean nothing."
-    )];
-    section.galleries.push(Gallery {
-        id: "splotches-images".to_owned(),
-        title: "The same cloud three times".to_owned(),
+    );
+    let gallery = Gallery {
         caption: "Four sets each are averaged for the share of the light; one is shown.".to_owned(),
-        rows: vec![GalleryRow { label: String::new(), pictures }],
-    });
-    Ok(section)
+        ..Gallery::of_images(
+            "splotches-images",
+            "The same cloud three times",
+            vec![(String::new(), pictures)],
+        )
+    };
+    Ok(Section {
+        text: vec![text],
+        galleries: vec![gallery],
+        ..Section::new("splotches", "Fig. 2: splotches, or too little light")
+    })
 }
 
 /// Fig. 11 and E1: the energy of the room, stage by stage.
@@ -140,9 +123,10 @@ fn energy(run: &Run<'_>, reference: &Reference) -> Result<(Vec<Stage>, Section),
     let others =
         OTHER_BOUNDS.iter().flat_map(|&b| stages(b).into_iter().take(OF_OTHERS).map(move |stage| (b, stage)));
     let mut measured: Vec<Stage> = Vec::new();
-    for (k, (bound, (name, integrator))) in (0..).zip(low.chain(others)) {
+    for (bound, (name, integrator)) in low.chain(others) {
+        let seed = run.seed(format_args!("energy/{bound}/{name}"));
         let subject = subject.with("integrator", integrator);
-        let images = subject.measure(run.samples(SETS), (run.seed(23, k), REPLICAS), &run.media)?;
+        let images = subject.measure(run.samples(SETS), (seed, REPLICAS), &run.media)?;
         let energy = images.measured_mean().map(|mean| mean / reference.mean.0);
         let clamped = measured.iter().find(|stage| stage.bound == bound);
         let clamped = clamped.map_or(energy.value, |stage| stage.energy.value);
@@ -157,52 +141,47 @@ fn energy(run: &Run<'_>, reference: &Reference) -> Result<(Vec<Stage>, Section),
         });
         run.advance();
     }
-    let mut table = Table::new(
-        "energy-table",
-        "Energy by steps of compensation",
-        "Of the mean radiance of the path-traced image. z: in standard errors of both images; all but unlimited steps are biased by design.",
-        &[
-            ("b", "1/length²"),
-            ("stage", ""),
-            ("share of the light", "1"),
-            ("of what clamping loses", "1"),
-            ("RMSE", "radiance"),
-            ("z", "1"),
-        ],
-    );
-    for stage in &measured {
-        table.rows.push(vec![
-            Cell::Number(stage.bound),
-            Cell::text(stage.name),
-            Cell::measured(stage.energy.value, stage.energy.interval),
-            Cell::Number(stage.recovered),
-            Cell::measured(stage.rmse.value, stage.rmse.interval),
-            Cell::Number(stage.z),
-        ]);
-    }
-    let mut section =
-        Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke");
-    section.text = vec![format!(
+    let text = format!(
         "{side} x {side} pixels in gray, {} sets of {PATHS} light paths per image, b = {LOW_BOUND}, four points per eye ray, {REPLICAS} independent images. \
          In the differences green is light that is missing, red light that is too much, as in the paper; noise is both.",
         run.samples(SETS),
         side = scenes::side(run)
-    )];
-    section.tables.push(table);
-    let at_low = measured.iter().filter(|stage| stage.bound == LOW_BOUND);
-    let rows = at_low.enumerate().map(|(k, stage)| GalleryRow {
-        label: stage.name.to_owned(),
-        pictures: vec![
-            picture(&format!("energy-{k}"), "image", Vec::new(), &stage.images, super::EXPOSURE),
-            difference(k, stage, reference),
+    );
+    let table = Table::of(
+        [
+            "energy-table",
+            "Energy by steps of compensation",
+            "Of the mean radiance of the path-traced image. z: in standard errors of both images; all but unlimited steps are biased by design.",
         ],
+        &measured,
+        &[
+            ("b", "1/length²", &|stage| Cell::Number(stage.bound)),
+            ("stage", "", &|stage| Cell::text(stage.name)),
+            ("share of the light", "1", &|stage| stage.energy.cell()),
+            ("of what clamping loses", "1", &|stage| Cell::Number(stage.recovered)),
+            ("RMSE", "radiance", &|stage| stage.rmse.cell()),
+            ("z", "1", &|stage| Cell::Number(stage.z)),
+        ],
+    );
+    let at_low = measured.iter().filter(|stage| stage.bound == LOW_BOUND);
+    let rows = at_low.enumerate().map(|(k, stage)| {
+        let image = stage.images.picture(format!("energy-{k}"), "image", Vec::new(), super::EXPOSURE);
+        (stage.name.to_owned(), vec![image, difference(k, stage, reference)])
     });
-    section.galleries.push(Gallery {
-        id: "energy-images".to_owned(),
-        title: "Images, and their difference from the reference".to_owned(),
+    let gallery = Gallery {
         caption: "Differences are those of the mean of all images.".to_owned(),
-        rows: rows.collect(),
-    });
+        ..Gallery::of_images(
+            "energy-images",
+            "Images, and their difference from the reference",
+            rows.collect(),
+        )
+    };
+    let section = Section {
+        text: vec![text],
+        tables: vec![table],
+        galleries: vec![gallery],
+        ..Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke")
+    };
     Ok((measured, section))
 }
 
@@ -224,38 +203,38 @@ fn difference(k: usize, stage: &Stage, reference: &Reference) -> Picture {
 
 /// Fig. 4: a line through the room.
 fn scanline(run: &Run<'_>) -> Result<Section, Failure> {
-    let subject = scenes::scanline(COLUMNS)?;
-    let (sets, paths) = LINE;
-    let reference = Reference::of(run, &subject, paths, run.seed(24, 0))?;
+    /// Pixels, sets of lights, and paths per pixel.
+    const LINE: (u32, u32, u32) = (64, 512, 65536);
+    let (columns, sets, paths) = LINE;
+    let subject = scenes::scanline(columns)?;
+    let reference = Reference::of(run, &subject, paths, run.seed("scanline/reference"))?;
     let x = |i: usize| i as f64 + 0.5;
     let exact = reference.pixels.iter().enumerate().map(|(i, &value)| (x(i), value));
     let mut curves = vec![Curve::reference("ground truth", exact)];
-    let mut add = |name: &str, integrator: Value, sets: u32, seed: u64, subject: &Subject| {
+    let unbounded = ("unbounded, one set", lights(PATHS, 256, &Value::Null), 1);
+    let staged = stages(LOW_BOUND).into_iter().map(|(name, lights)| (name, lights, run.samples(sets)));
+    for (name, integrator, sets) in staged.chain([unbounded]) {
+        let seed = run.seed(format_args!("scanline/{name}"));
         let images = subject.with("integrator", integrator).measure(sets, (seed, 2), &run.media)?;
         let (mean, _) = images.mean();
         let marks = mean.iter().enumerate().map(|(i, &value)| Mark::at(x(i), value));
         curves.push(Curve::method(name).with_marks(marks));
         run.advance();
-        Ok::<(), Failure>(())
-    };
-    for (k, (name, integrator)) in (0..).zip(stages(LOW_BOUND)) {
-        add(name, integrator, run.samples(sets), run.seed(25, k), &subject)?;
     }
-    add("unbounded, one set", lights(PATHS, 256, &Value::Null), 1, run.seed(26, 0), &subject)?;
-    let mut chart = Chart::new(
-        "scanline-radiance",
-        "Fig. 4: a scanline",
-        Axis::linear("column [pixel]"),
-        Axis::linear("radiance [radiance]"),
-    );
-    chart.caption = "The middle row of the room. Unbounded lights of one set jump where an eye ray passes near one of them.".to_owned();
-    chart.curves = curves;
-    let mut section = Section::new("scanline", "Fig. 4: a scanline");
-    section.text = vec![format!(
-        "A row of {COLUMNS} pixels through the middle of the room in gray, b = {LOW_BOUND}; {} sets of {PATHS} light paths twice over, {paths} paths per pixel for the \
+    let text = format!(
+        "A row of {columns} pixels through the middle of the room in gray, b = {LOW_BOUND}; {} sets of {PATHS} light paths twice over, {paths} paths per pixel for the \
          ground truth.",
         run.samples(sets)
-    )];
-    section.charts.push(chart);
-    Ok(section)
+    );
+    let chart = Chart {
+        caption: "The middle row of the room. Unbounded lights of one set jump where an eye ray passes near one of them.".to_owned(),
+        curves,
+        ..Chart::new(
+            "scanline-radiance",
+            "Fig. 4: a scanline",
+            Axis::linear("column [pixel]"),
+            Axis::linear("radiance [radiance]"),
+        )
+    };
+    Ok(Section { text: vec![text], charts: vec![chart], ..Section::new("scanline", "Fig. 4: a scanline") })
 }

@@ -5,7 +5,7 @@ use crate::Failure;
 use crate::field::AnyMedium;
 use crate::plan::Spectra;
 use crate::report::document::{Cell, Section, Table};
-use crate::report::replicas::Measured;
+use crate::report::measured::Measured;
 use crate::report::run::Run;
 use cpu_time::ThreadTime;
 use fairflight_collision::Version;
@@ -52,63 +52,68 @@ struct Connection {
 
 pub(super) fn study(run: &Run<'_>) -> Result<Costs, Failure> {
     let subject = scenes::smoke_room(run.quick_or(16, 32))?;
-    let seconds = |integrator, k: u64| -> Result<(Measured, f64), Failure> {
-        let images = subject.with("integrator", integrator).measure(
-            run.samples(SETS).max(2),
-            (run.seed(80, k), REPLICAS),
-            &run.media,
-        )?;
+    let seconds = |name: &str, integrator| -> Result<(Measured, f64), Failure> {
+        let seed = run.seed(format_args!("costs/{name}"));
+        let lit = subject.with("integrator", integrator);
+        let images = lit.measure(run.samples(SETS).max(2), (seed, REPLICAS), &run.media)?;
         run.advance();
         Ok((images.measured_seconds(), images.virtual_lights().light_path_seconds))
     };
-    let (clamped, paths) = seconds(lights(PATHS, 1, &json!(BOUND)), 0)?;
+    let (clamped, paths) = seconds("clamped", lights(PATHS, 1, &json!(BOUND)))?;
     let paper = Choice { strategy: "many_to_one", ..Choice::PAPER };
-    let (ignored, _) = seconds(Choice { visibility: "ignored", ..paper }.lights(PATHS, 1, BOUND), 1)?;
-    let (full, _) = seconds(paper.lights(PATHS, 1, BOUND), 2)?;
+    let ignored = Choice { visibility: "ignored", ..paper };
+    let (ignored, _) = seconds("visibility ignored", ignored.lights(PATHS, 1, BOUND))?;
+    let (full, _) = seconds("visibility seen", paper.lights(PATHS, 1, BOUND))?;
     let share = |with: &Measured| clamped.over(with).map(|rest| 1.0 - rest);
     let (share_ignored, share_full) = (share(&ignored), share(&full));
     let connection = connections(run)?;
     run.advance();
 
-    let mut images = Table::new(
-        "costs-images",
-        "An image",
-        "One compensation vertex per point and light, two steps, approximate transmittance: as the paper's renderer has it.",
-        &[("image", ""), ("CPU seconds", "s"), ("share of compensation", "1")],
+    let cell = |measured: Option<&Measured>| measured.map_or(Cell::Empty, Measured::cell);
+    let images = Table::of(
+        [
+            "costs-images",
+            "An image",
+            "One compensation vertex per point and light, two steps, approximate transmittance: as the paper's renderer has it.",
+        ],
+        [
+            ("light paths alone", Cell::Number(paths), None),
+            ("clamped", clamped.cell(), None),
+            ("compensated, visibility ignored", ignored.cell(), Some(&share_ignored)),
+            ("compensated, visibility seen", full.cell(), Some(&share_full)),
+        ],
+        &[
+            ("image", "", &|(name, ..)| Cell::text(*name)),
+            ("CPU seconds", "s", &|(_, seconds, _)| seconds.clone()),
+            ("share of compensation", "1", &|(.., share)| cell(*share)),
+        ],
     );
-    for (name, seconds, share) in [
-        ("light paths alone", None, None),
-        ("clamped", Some(clamped), None),
-        ("compensated, visibility ignored", Some(ignored), Some(share_ignored)),
-        ("compensated, visibility seen", Some(full), Some(share_full)),
-    ] {
-        let cell = |m: Option<Measured>| m.map_or(Cell::Empty, |m| Cell::measured(m.value, m.interval));
-        let seconds = if name == "light paths alone" { Cell::Number(paths) } else { cell(seconds) };
-        images.rows.push(vec![Cell::text(name), seconds, cell(share)]);
-    }
-    let mut parts = Table::new(
-        "costs-connection",
-        "A connection",
-        "Between points of eye rays and lights of one set, in the room; medians of loops that ran in turn. Visibility and transmittance by \
-         leaving them out; a connection that is not seen needs no transmittance.",
-        &[("part", ""), ("time", "ns")],
+    let parts = Table::of(
+        [
+            "costs-connection",
+            "A connection",
+            "Between points of eye rays and lights of one set, in the room; medians of loops that ran in turn. Visibility and transmittance by \
+             leaving them out; a connection that is not seen needs no transmittance.",
+        ],
+        [
+            ("directions, cosines and phase functions", connection.geometry),
+            ("visibility", connection.visibility),
+            ("transmittance by ratio tracking", connection.transmittance),
+            ("whole connection", connection.whole),
+            ("a virtual point light, once per set", connection.light),
+        ],
+        &[("part", "", &|(name, _)| Cell::text(*name)), ("time", "ns", &|(_, time)| Cell::Number(*time))],
     );
-    for (name, time) in [
-        ("directions, cosines and phase functions", connection.geometry),
-        ("visibility", connection.visibility),
-        ("transmittance by ratio tracking", connection.transmittance),
-        ("whole connection", connection.whole),
-        ("a virtual point light, once per set", connection.light),
-    ] {
-        parts.rows.push(vec![Cell::text(name), Cell::Number(time)]);
-    }
-    let mut section = Section::new("costs", "Fig. 10: where the time goes");
-    section.text = vec![format!(
+    let text = format!(
         "The room with smoke in gray, sets of {PATHS} light paths, b = {BOUND}. The paper's renderer spends most of its time on shadow maps; \
          here visibility is {} rectangles tried one by one, and transmittance three octaves of noise at each look-up.",
         6
-    )];
-    section.tables = vec![images, parts];
+    );
+    let section = Section {
+        text: vec![text],
+        tables: vec![images, parts],
+        ..Section::new("costs", "Fig. 10: where the time goes")
+    };
     Ok(Costs { share_ignored, share_full, section })
 }
 
@@ -125,7 +130,7 @@ impl<M: Medium> RayTransmittance<M> for Clear {
 fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
     let plan = scenes::smoke_room(32)?.with("integrator", lights(PATHS, 1, &json!(BOUND))).plan(
         1,
-        run.seed(81, 0),
+        run.seed("costs/connection/plan"),
         &run.media,
     )?;
     let (AnyMedium::Perlin(medium), Spectra::Gray(radiant)) = (&plan.medium, &plan.spectra) else {
@@ -138,7 +143,7 @@ fn connections(run: &Run<'_>) -> Result<Connection, Failure> {
     let walk = Walk::new(Version::NonTerminating, sampling);
     let emitters = Emitters::new(lights, surfaces, world.enclosing_ball(), plan.camera.origin());
     let tracer = LightPaths::new(world, &emitters, walk);
-    let mut source = Seeded::new(run.seed(81, 1));
+    let mut source = Seeded::new(run.seed("costs/connection/points"));
     let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());
     let clock = ThreadTime::now();
     for _ in 0..PATHS {

@@ -2,7 +2,8 @@
 
 use super::scenes::path_tracer;
 use crate::Failure;
-use crate::report::replicas::{Measured, Replicas, Subject};
+use crate::report::measured::Measured;
+use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
 
 /// Independent images of the reference: their scatter is its error.

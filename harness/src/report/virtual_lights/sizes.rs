@@ -2,10 +2,9 @@
 
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Mark, Section, Table};
-use crate::report::replicas::Measured;
+use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
+use crate::report::measured::Measured;
 use crate::report::run::Run;
-use crate::report::speed::curve as joined;
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 4;
@@ -44,65 +43,58 @@ pub(super) struct Sizes {
 pub(super) fn study(run: &Run<'_>) -> Result<Sizes, Failure> {
     let subject = scenes::smoke_room(scenes::side(run))?;
     let mut costs: Vec<[Measured; 3]> = Vec::new();
-    for (k, paths) in (0..).zip(PATHS) {
+    for (k, paths) in PATHS.into_iter().enumerate() {
         let mut row = Vec::new();
-        for (m, method) in (0..).zip(methods()) {
+        for method in methods() {
+            let seed = run.seed(format_args!("sizes/{}/{paths}", method.name));
             let subject = subject.with("integrator", method.choice.lights(paths, method.eye_samples, BOUND));
             // Two sets at least, so that the scatter of a pixel is known.
             let sets = run.samples(method.sets[k]).max(2);
-            let images = subject.measure(sets, (run.seed(90 + m, k as u64), REPLICAS), &run.media)?;
+            let images = subject.measure(sets, (seed, REPLICAS), &run.media)?;
             let seconds = images.seconds();
             row.push(images.squared_error().map(|error| (error * seconds).sqrt()));
             run.advance();
         }
         costs.push([row[0], row[1], row[2]]);
     }
-    let mut chart = Chart::new(
-        "sizes-error",
-        "Error at equal time over the size of a set",
-        Axis::logarithmic("light paths of a set [1]"),
-        Axis::logarithmic("RMSE · √(CPU seconds) [radiance √s]"),
-    );
-    let mut table = Table::new(
-        "sizes-table",
-        "RMSE · √(CPU seconds) by the size of a set",
-        "What one image of a second of CPU time would have for an error.",
+    let curve = |(m, method): (usize, Method)| {
+        Curve::joined(method.name, PATHS.iter().zip(&costs).map(|(&paths, row)| row[m].mark(paths.into())))
+    };
+    let chart = Chart {
+        curves: methods().into_iter().enumerate().map(curve).collect(),
+        ..Chart::new(
+            "sizes-error",
+            "Error at equal time over the size of a set",
+            Axis::logarithmic("light paths of a set [1]"),
+            Axis::logarithmic("RMSE · √(CPU seconds) [radiance √s]"),
+        )
+    };
+    let ratio = |[many, one, local]: &[Measured; 3]| [one.over(many), local.over(many)];
+    let table = Table::of(
+        [
+            "sizes-table",
+            "RMSE · √(CPU seconds) by the size of a set",
+            "What one image of a second of CPU time would have for an error.",
+        ],
+        PATHS.into_iter().zip(&costs),
         &[
-            ("light paths", "1"),
-            ("1-to-N", "radiance √s"),
-            ("1-to-1", "radiance √s"),
-            ("1-to-1, locally homogeneous", "radiance √s"),
-            ("1-to-1 / 1-to-N", "1"),
-            ("1-to-1, locally homogeneous / 1-to-N", "1"),
+            ("light paths", "1", &|(paths, _)| Cell::Count((*paths).into())),
+            ("1-to-N", "radiance √s", &|(_, [many, ..])| many.cell()),
+            ("1-to-1", "radiance √s", &|(_, [_, one, _])| one.cell()),
+            ("1-to-1, locally homogeneous", "radiance √s", &|(_, [.., local])| local.cell()),
+            ("1-to-1 / 1-to-N", "1", &|(_, row)| ratio(row)[0].cell()),
+            ("1-to-1, locally homogeneous / 1-to-N", "1", &|(_, row)| ratio(row)[1].cell()),
         ],
     );
-    for (m, method) in methods().iter().enumerate() {
-        let marks = PATHS
-            .iter()
-            .zip(&costs)
-            .map(|(&paths, row)| Mark::measured(f64::from(paths), row[m].value, row[m].interval));
-        chart.curves.push(joined(method.name, marks.collect()));
-    }
-    let mut ratios = Vec::new();
-    for (&paths, [many, one, local]) in PATHS.iter().zip(&costs) {
-        let ratio = [one.over(many), local.over(many)];
-        let cell = |m: &Measured| Cell::measured(m.value, m.interval);
-        table.rows.push(vec![
-            Cell::Count(u64::from(paths)),
-            cell(many),
-            cell(one),
-            cell(local),
-            cell(&ratio[0]),
-            cell(&ratio[1]),
-        ]);
-        ratios.push((paths, ratio));
-    }
-    let mut section = Section::new("sizes", "The size of a set");
-    section.text = vec![format!(
+    let text = format!(
         "The same room and bound (b = {BOUND}). The time of 1-to-N grows with the lights of a set, whose number does little for the noise of a \
          compensation vertex; that of 1-to-1 does not. Errors from the scatter of a pixel over its sets, {REPLICAS} independent images."
-    )];
-    section.charts.push(chart);
-    section.tables.push(table);
-    Ok(Sizes { ratios, section })
+    );
+    let section = Section {
+        text: vec![text],
+        charts: vec![chart],
+        tables: vec![table],
+        ..Section::new("sizes", "The size of a set")
+    };
+    Ok(Sizes { ratios: PATHS.into_iter().zip(costs.iter().map(ratio)).collect(), section })
 }

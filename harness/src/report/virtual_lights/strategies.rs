@@ -3,12 +3,10 @@
 use super::reference::{ROOM_PATHS, Reference};
 use super::scenes::{self, BOUND, Choice, path_tracer};
 use crate::Failure;
-use crate::report::document::{
-    Axis, Cell, Chart, Gallery, GalleryRow, Mark, Picture, Pixels, Section, Table,
-};
-use crate::report::replicas::{Measured, Replicas};
+use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
+use crate::report::measured::Measured;
+use crate::report::replicas::Replicas;
 use crate::report::run::Run;
-use crate::report::speed::curve as joined;
 use serde_json::Value;
 
 /// Independent images per measurement.
@@ -85,15 +83,17 @@ impl Strategies {
 pub(super) fn study(run: &Run<'_>, reference: &Reference) -> Result<Strategies, Failure> {
     let subject = scenes::smoke_room(scenes::side(run))?;
     let (mut entries, mut curves) = (Vec::new(), Vec::new());
-    for (m, method) in (0..).zip(methods()) {
+    for method in methods() {
         let subject = subject.with("integrator", method.integrator);
         let mut marks = Vec::new();
         for point in 0..POINTS {
-            let sets = (run.samples(method.sets) / STEP.pow(POINTS - 1 - point)).max(1);
-            let images = subject.measure(sets, (run.seed(1 + m, u64::from(point)), REPLICAS), &run.media)?;
+            let part = STEP.pow(POINTS - 1 - point);
+            let sets = (run.samples(method.sets) / part).max(1);
+            let seed = run.seed(format_args!("strategies/{}/sets over {part}", method.name));
+            let images = subject.measure(sets, (seed, REPLICAS), &run.media)?;
             let rmse = reference.rmse(&images);
             let seconds = images.seconds();
-            marks.push(Mark::measured(seconds, rmse.value, rmse.interval));
+            marks.push(rmse.mark(seconds));
             run.advance();
             if point + 1 == POINTS {
                 entries.push(Entry {
@@ -108,82 +108,67 @@ pub(super) fn study(run: &Run<'_>, reference: &Reference) -> Result<Strategies, 
                 });
             }
         }
-        curves.push(joined(method.name, marks));
+        curves.push(Curve::joined(method.name, marks));
     }
-    let mut chart = Chart::new(
-        "strategies-time",
-        "Fig. 7: error over time",
-        Axis::logarithmic("CPU seconds of an image [s]"),
-        Axis::logarithmic("RMSE [radiance]"),
-    );
-    chart.caption = "Every set of lights is new, so that all fall with the square root of time.".to_owned();
-    chart.curves = curves;
-    let mut section = Section::new("strategies", "Fig. 6 and 7: strategies of compensation at equal time");
-    section.text = vec![format!(
+    let chart = Chart {
+        caption: "Every set of lights is new, so that all fall with the square root of time.".to_owned(),
+        curves,
+        ..Chart::new(
+            "strategies-time",
+            "Fig. 7: error over time",
+            Axis::logarithmic("CPU seconds of an image [s]"),
+            Axis::logarithmic("RMSE [radiance]"),
+        )
+    };
+    let text = format!(
         "The room with smoke in gray, without its lamp in the picture, {side} x {side} pixels, sets of {PATHS} light paths, b = {BOUND}, unlimited steps, transmittance and visibility \
          exact: all of these are unbiased. 1-to-N: one compensation vertex per point, connected with all lights. N-to-1: one vertex for each \
          light, and one that sees emitters. 1-to-1: each point on the eye ray has one light and one vertex, four points per ray. Errors are against {ROOM_PATHS} paths per \
          pixel, whose own error ({:.1e}) is taken off; intervals are 95 %, from {REPLICAS} independent images with sets of their own.",
         reference.squared_error.sqrt(),
         side = scenes::side(run)
-    )];
-    section.charts.push(chart);
-    section.tables.push(table(&entries));
-    section.galleries.push(gallery(&entries, reference));
+    );
+    let section = Section {
+        text: vec![text],
+        charts: vec![chart],
+        tables: vec![table(&entries)],
+        galleries: vec![gallery(&entries, reference)],
+        ..Section::new("strategies", "Fig. 6 and 7: strategies of compensation at equal time")
+    };
     Ok(Strategies { entries, section })
 }
 
 fn table(entries: &[Entry]) -> Table {
-    let mut table = Table::new(
-        "strategies-table",
-        "Strategies at equal time",
-        "Relative RMSE: at the time that 1-to-N takes for its own. z: mean radiance of the images less that of the reference, in standard \
-         errors of both. Inside: compensation vertices that lay where something was lost.",
-        &[
-            ("method", ""),
-            ("sets or paths", "1"),
-            ("CPU seconds", "s"),
-            ("RMSE", "radiance"),
-            ("RMSE at equal time / 1-to-N", "1"),
-            ("inside", "1"),
-            ("z", "1"),
+    Table::of(
+        [
+            "strategies-table",
+            "Strategies at equal time",
+            "Relative RMSE: at the time that 1-to-N takes for its own. z: mean radiance of the images less that of the reference, in standard \
+             errors of both. Inside: compensation vertices that lay where something was lost.",
         ],
-    );
-    for entry in entries {
-        let relative = entry.cost.over(&entries[0].cost).map(f64::sqrt);
-        table.rows.push(vec![
-            Cell::text(entry.name),
-            Cell::Count(u64::from(entry.images.rays_per_pixel())),
-            Cell::Number(entry.seconds),
-            Cell::measured(entry.rmse.value, entry.rmse.interval),
-            Cell::measured(relative.value, relative.interval),
-            Cell::maybe(entry.share_inside.is_finite().then_some(entry.share_inside)),
-            Cell::Number(entry.z),
-        ]);
-    }
-    table
+        entries,
+        &[
+            ("method", "", &|entry| Cell::text(entry.name)),
+            ("sets or paths", "1", &|entry| Cell::Count(entry.images.rays_per_pixel().into())),
+            ("CPU seconds", "s", &|entry| Cell::Number(entry.seconds)),
+            ("RMSE", "radiance", &|entry| entry.rmse.cell()),
+            ("RMSE at equal time / 1-to-N", "1", &|entry| {
+                entry.cost.over(&entries[0].cost).map(f64::sqrt).cell()
+            }),
+            ("inside", "1", &|entry| Cell::maybe(Some(entry.share_inside).filter(|share| share.is_finite()))),
+            ("z", "1", &|entry| Cell::Number(entry.z)),
+        ],
+    )
 }
 
 fn gallery(entries: &[Entry], reference: &Reference) -> Gallery {
-    let picture = |id: &str, label: &str, lines: Vec<String>, images: &Replicas| Picture {
-        id: format!("strategies-{id}"),
-        label: label.to_owned(),
-        lines,
-        resolution: images.first().resolution(),
-        pixels: Pixels::Radiance { values: images.first().means().to_vec(), exposure: super::EXPOSURE },
-    };
-    let exact = picture("reference", "reference", vec!["path tracing".to_owned()], &reference.shown);
+    let lines = vec!["path tracing".to_owned()];
+    let exact = reference.shown.picture("strategies-reference", "reference", lines, super::EXPOSURE);
     let of_entry = |(i, entry): (usize, &Entry)| {
         let lines = vec![format!("RMSE {:.4}", entry.rmse.value), format!("{:.1} CPU s", entry.seconds)];
-        picture(&i.to_string(), entry.name, lines, &entry.images)
+        entry.images.picture(format!("strategies-{i}"), entry.name, lines, super::EXPOSURE)
     };
-    Gallery {
-        id: "strategies-images".to_owned(),
-        title: "Fig. 6: the images at roughly equal time".to_owned(),
-        caption: "One image of each measurement.".to_owned(),
-        rows: vec![GalleryRow {
-            label: String::new(),
-            pictures: [exact].into_iter().chain(entries.iter().enumerate().map(of_entry)).collect(),
-        }],
-    }
+    let pictures = [exact].into_iter().chain(entries.iter().enumerate().map(of_entry)).collect();
+    let title = "Fig. 6: the images at roughly equal time";
+    Gallery::of_images("strategies-images", title, vec![(String::new(), pictures)])
 }

@@ -1,7 +1,7 @@
 //! Writers of reports: they read the data of a report and nothing else.
 //!
 //! A report is a folder: `results.json`, `tables.md`, `index.html`, and each figure as SVG, PNG and CSV. Call [`prepare`] before the
-//! measurement and [`Prepared::commit`] after it, or [`write_all_or_nothing`] for both. The standard report has figures of its own;
+//! measurement and [`Prepared::commit`] after it. The standard report has figures of its own;
 //! `document` writes all other reports. Both share the drawing, the tables, the page's parts and the folder.
 
 mod colour_map;
@@ -63,10 +63,8 @@ impl Prepared {
 }
 
 /// Prepares and commits in one.
-///
-/// # Errors
-/// [`Failure::NotWritten`]; then nothing has changed.
-pub fn write_all_or_nothing(report: &impl Files, folder: &Path) -> Result<(), Failure> {
+#[cfg(test)]
+fn write_all_or_nothing(report: &impl Files, folder: &Path) -> Result<(), Failure> {
     prepare(folder)?.commit(report)
 }
 

@@ -1,16 +1,8 @@
 //! Tests over whole folders.
 
 use super::*;
+use crate::testing::{linked_files, names};
 use std::fs;
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
 
 fn written() -> tempfile::TempDir {
     let root = tempfile::tempdir().unwrap();
@@ -91,19 +83,8 @@ fn the_page_needs_no_network_and_its_links_lead_somewhere() {
     let root = written();
     let folder = root.path().join("standard");
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
-    assert!(!page.contains("http://") && !page.contains("https://"));
-    let mut files = 0;
-    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
-        match link.strip_prefix('#') {
-            Some(id) => assert!(page.contains(&format!("id=\"{id}\"")), "{link}"),
-            None if link.starts_with("data:") => {}
-            None => {
-                assert!(folder.join(link).is_file(), "{link}");
-                files += 1;
-            }
-        }
-    }
-    assert!(files > 40);
+    let files = linked_files(&page, &folder);
+    assert!(files.len() > 40);
     for source in page.split("src=\"").skip(1) {
         assert!(source.starts_with("data:image/png;base64,"));
     }

@@ -8,6 +8,7 @@
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
 use crate::field::KnownField;
+use crate::parallel::in_parallel;
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::study::Subject;
 use crate::report::study::laws::SharedLaws;
@@ -15,7 +16,6 @@ use crate::report::study::walk::{WALK_EXPLORERS, Walker, trace, walker};
 use fairflight_media::{Extinction, OpticalThickness};
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::Interaction;
-use rayon::prelude::*;
 
 /// Distances at which the band is checked, in units of the ray's length.
 const PLACES: [f64; 5] = [0.1, 0.3, 0.5, 0.75, 1.0];
@@ -52,7 +52,7 @@ pub(super) fn s10(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     }
     let least = all.iter().copied().fold(1.0, f64::min);
     let most = all.iter().copied().fold(0.0, f64::max);
-    let verdict = if worst < SIGMAS { ClaimVerdict::Holds } else { ClaimVerdict::DoesNotHold };
+    let verdict = ClaimVerdict::of(worst < SIGMAS);
     Ok(claim(
         "S10",
         "Sample transmittance functions lie within the band of plus and minus one standard deviation (eq. 16) as often as \
@@ -106,28 +106,22 @@ fn coverage(evidence: &Evidence<'_>, subject: &Subject) -> Result<Vec<Coverage>,
     // Look-ups per walk, and about twice as many for the other draws, at each place anew.
     let walk_nanoseconds = sigma_samp * length * subject.lookup_nanoseconds + 100.0;
     let walks = ((evidence.run.effort.claim_seconds * 1e9 / walk_nanoseconds) as usize).clamp(2_000, 1 << 16);
-    let seed = |i: u64| evidence.seed(10, (subject.index << 8) + i);
-    let traced = trace(subject, &walker, walks, Seeded::new(seed(0xff)));
-    let points = places
-        .par_iter()
-        .zip(PLACES)
-        .enumerate()
-        .map(|(i, (place, at))| {
-            let within =
-                traced.iter().filter(|walk| place.holds(Interaction::weight_at(walk, place.s))).count();
-            let draws = walks;
-            let by_law =
-                unordered(subject.profile.field(), &walker, (place, draws), Seeded::new(seed(i as u64)));
-            Coverage {
-                place: at,
-                measured: within as f64 / walks as f64,
-                law: by_law as f64 / draws as f64,
-                walks: walks as f64,
-                draws: draws as f64,
-            }
-        })
-        .collect();
-    Ok(points)
+    let seed = |name: &str| evidence.seed(format_args!("S10/{}/{name}", subject.id));
+    let traced = trace(subject, &walker, walks, Seeded::new(seed("walks")));
+    Ok(in_parallel(places.len(), &|i| {
+        let (place, at) = (&places[i], PLACES[i]);
+        let within = traced.iter().filter(|walk| place.holds(Interaction::weight_at(walk, place.s))).count();
+        let draws = walks;
+        let source = Seeded::new(seed(&format!("law at {at}")));
+        let by_law = unordered(subject.profile.field(), &walker, (place, draws), source);
+        Coverage {
+            place: at,
+            measured: within as f64 / walks as f64,
+            law: by_law as f64 / draws as f64,
+            walks: walks as f64,
+            draws: draws as f64,
+        }
+    }))
 }
 
 /// The number of `draws` products over a Poisson number of independent uniform points that lie within the band.

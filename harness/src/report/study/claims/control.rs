@@ -8,11 +8,11 @@ use super::case::Case;
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
 use crate::estimator::{ControlSpec, DoubleParticleSpec, EstimatorSpec};
+use crate::parallel::try_in_parallel;
 use crate::plan::Plan;
 use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::study::Subject;
 use crate::report::study::laws::SharedLaws;
-use rayon::prelude::*;
 
 const FACTORS: [f64; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
 
@@ -25,22 +25,12 @@ pub(super) fn s8(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
         parts.push(format!("{} at {:.5} of a mean of {:.5}", subject.id, best, subject.facts.mean));
     }
     let subject = evidence.analytic();
-    let cases: Vec<Result<Case, Failure>> = FACTORS
-        .par_iter()
-        .enumerate()
-        .map(|(i, factor)| {
-            let spec = spec(4.0 * subject.majorant, factor * subject.facts.mean);
-            let seconds = 2.0 * evidence.run.effort.claim_seconds;
-            Case::measure(
-                &subject.profile,
-                spec,
-                evidence.seed(8, i as u64),
-                seconds,
-                subject.lookup_nanoseconds,
-            )
-        })
-        .collect();
-    let cases: Vec<Case> = cases.into_iter().collect::<Result<_, _>>()?;
+    let seconds = 2.0 * evidence.run.effort.claim_seconds;
+    let cases = try_in_parallel(FACTORS.len(), &|i| {
+        let spec = spec(4.0 * subject.majorant, FACTORS[i] * subject.facts.mean);
+        let seed = evidence.seed(format_args!("S8/{}", FACTORS[i]));
+        Case::measure(&subject.profile, spec, seed, seconds, subject.lookup_nanoseconds)
+    })?;
     let at_mean = &cases[2];
     let separation = |case: &Case| (case.measured - at_mean.measured) / case.error.hypot(at_mean.error);
     let not_above = cases.iter().enumerate().all(|(i, case)| i == 2 || separation(case) > -SIGMAS);

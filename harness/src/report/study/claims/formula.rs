@@ -11,10 +11,10 @@ use super::{Evidence, claim};
 use crate::Failure;
 use crate::estimator::{ControlSpec, DoubleParticleSpec};
 use crate::field::AnyProfile;
+use crate::parallel::try_in_parallel;
 use crate::report::result::{Claim, ClaimVerdict, Series};
 use crate::report::study::series::EXPLORERS;
 use fairflight_media::PiecewiseLinear;
-use rayon::prelude::*;
 
 pub(super) fn s1(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     let subject = evidence.analytic();
@@ -34,15 +34,11 @@ pub(super) fn s1(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
         ("homogeneous, control above sigma_t, r = -0.125 (negative everywhere)", &slab, 2.0, constant(1.25)),
     ];
     let seconds = evidence.run.effort.claim_seconds;
-    let measured: Vec<Result<Case, Failure>> = cases
-        .par_iter()
-        .enumerate()
-        .map(|(i, (_, (profile, nanoseconds), sigma_samp, control))| {
-            let spec = DoubleParticleSpec::at(*sigma_samp, control.clone()).into();
-            Case::measure(profile, spec, evidence.seed(1, i as u64), seconds, *nanoseconds)
-        })
-        .collect();
-    let measured: Vec<Case> = measured.into_iter().collect::<Result<_, _>>()?;
+    let measured = try_in_parallel(cases.len(), &|i| {
+        let (name, (profile, nanoseconds), sigma_samp, control) = &cases[i];
+        let spec = DoubleParticleSpec::at(*sigma_samp, control.clone()).into();
+        Case::measure(profile, spec, evidence.seed(format_args!("S1/{name}")), seconds, *nanoseconds)
+    })?;
 
     let mut tested = Vec::new();
     let mut parts = Vec::new();

@@ -8,9 +8,9 @@ use super::case::{Case, closed, with_error};
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
 use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
+use crate::parallel::try_in_parallel;
 use crate::report::result::{Claim, ClaimVerdict, Series, SweepMeasurement, SweepPoint};
 use fairflight_collision::{Albedo, Version};
-use rayon::prelude::*;
 
 pub(super) fn s2(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     let (mut closed_spread, mut parts) = (0.0_f64, Vec::new());
@@ -110,17 +110,11 @@ pub(super) fn s3(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
         }
         .into())
     };
-    let tasks: Vec<(usize, usize)> =
-        (0..albedos.len()).flat_map(|a| (0..factors.len()).map(move |f| (a, f))).collect();
-    let cases: Vec<Result<Case, Failure>> = tasks
-        .into_par_iter()
-        .map(|(a, f)| {
-            let seed = evidence.seed(3, (4 * a + f) as u64);
-            let spec = spec(albedos[a], factors[f])?;
-            Case::measure(&subject.profile, spec, seed, seconds, subject.lookup_nanoseconds)
-        })
-        .collect();
-    let cases: Vec<Case> = cases.into_iter().collect::<Result<_, _>>()?;
+    let cases = try_in_parallel(albedos.len() * factors.len(), &|i| {
+        let (albedo, factor) = (albedos[i / factors.len()], factors[i % factors.len()]);
+        let seed = evidence.seed(format_args!("S3/{albedo}/{factor}"));
+        Case::measure(&subject.profile, spec(albedo, factor)?, seed, seconds, subject.lookup_nanoseconds)
+    })?;
     let mut parts = Vec::new();
     let (mut reached, mut above, mut agrees) = (true, true, true);
     for (albedo, cases) in albedos.iter().zip(cases.chunks(factors.len())) {
@@ -141,7 +135,7 @@ pub(super) fn s3(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
         agrees &= cases.iter().all(|case| case.z().abs() < SIGMAS);
         parts.push(format!("albedo {albedo}: {}, {limit}x: {:.4}", ratios.join(", "), near / bound));
     }
-    let verdict = if above && reached && agrees { ClaimVerdict::Holds } else { ClaimVerdict::DoesNotHold };
+    let verdict = ClaimVerdict::of(above && reached && agrees);
     Ok(claim(
         "S3",
         "Non-terminating version: the variance introduction density has the lower bound abs(sigma_diff) times albedo as r \

@@ -9,10 +9,11 @@ mod images;
 mod majorant;
 mod versions;
 
-use super::{Run, Study, Subject};
+use super::{Run, Subject};
 use crate::Failure;
+use crate::parallel::try_in_parallel;
 use crate::report::result::{Claim, ClaimVerdict, ImageStudy, MediumReport};
-use rayon::prelude::*;
+use std::fmt::Display;
 
 /// What a claim is judged from.
 #[derive(Clone, Copy)]
@@ -44,21 +45,17 @@ pub(super) fn ledger(
     images: &[ImageStudy],
 ) -> Result<Vec<Claim>, Failure> {
     let evidence = Evidence { run, subjects, media, images };
-    let claims: Vec<Result<Claim, Failure>> = JUDGES
-        .par_iter()
-        .map(|judge| {
-            let claim = judge(&evidence);
-            run.advance();
-            claim
-        })
-        .collect();
-    claims.into_iter().collect()
+    try_in_parallel(JUDGES.len(), &|i| {
+        let claim = JUDGES[i](&evidence);
+        run.advance();
+        claim
+    })
 }
 
 impl Evidence<'_> {
-    /// A seed of its own for each measurement of each claim.
-    fn seed(&self, claim: u64, measurement: u64) -> u64 {
-        self.run.seed(self.analytic(), Study::Claims, (claim << 16) + measurement)
+    /// The seed of a measurement, by its name: "claim/case".
+    fn seed(&self, name: impl Display) -> u64 {
+        self.run.seed(format_args!("claims/{name}"))
     }
 
     /// The analytic medium is always studied, and first.
@@ -73,12 +70,6 @@ fn claim(id: &str, words: &str, measured: String, verdict: ClaimVerdict, comment
         "S10" => "fig. 8",
         _ => "section 3.4",
     };
-    Claim {
-        id: id.to_owned(),
-        claim: words.to_owned(),
-        source: format!("szirmay-kalos-2017 {place}"),
-        measured,
-        verdict,
-        comment: comment.to_owned(),
-    }
+    let source = format!("szirmay-kalos-2017 {place}");
+    Claim::new((id, &source), words, measured, (verdict, comment))
 }

@@ -9,12 +9,12 @@ use super::case::{Case, homogeneous};
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
 use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
+use crate::parallel::try_in_parallel;
 use crate::plan::Plan;
 use crate::reference::{Truth, predict};
 use crate::report::result::{Claim, ClaimVerdict};
 use fairflight_collision::{Albedo, Version};
 use fairflight_media::Tolerance;
-use rayon::prelude::*;
 
 const VERSIONS: [Version; 3] = [Version::Terminating, Version::NonTerminating, Version::Adaptive];
 /// Optical thickness of the measured slab.
@@ -24,23 +24,11 @@ const CASES: [(f64, f64); 4] = [(0.0, 1.5), (0.0, 1.8), (0.5, 1.2), (0.5, 0.5)];
 
 pub(super) fn s4(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     let slab = homogeneous(1.0, THICKNESS)?;
-    let tasks: Vec<(usize, usize)> =
-        (0..CASES.len()).flat_map(|case| (0..VERSIONS.len()).map(move |version| (case, version))).collect();
-    let measured: Vec<Result<Case, Failure>> = tasks
-        .into_par_iter()
-        .map(|(case, version)| {
-            let (albedo, r) = CASES[case];
-            let seed = evidence.seed(4, (case * VERSIONS.len() + version) as u64);
-            Case::measure(
-                &slab,
-                spec(VERSIONS[version], albedo, r)?,
-                seed,
-                evidence.run.effort.claim_seconds,
-                5.0,
-            )
-        })
-        .collect();
-    let measured: Vec<Case> = measured.into_iter().collect::<Result<_, _>>()?;
+    let measured = try_in_parallel(CASES.len() * VERSIONS.len(), &|i| {
+        let ((albedo, r), version) = (CASES[i / VERSIONS.len()], VERSIONS[i % VERSIONS.len()]);
+        let seed = evidence.seed(format_args!("S4/{albedo}/{r}/{version:?}"));
+        Case::measure(&slab, spec(version, albedo, r)?, seed, evidence.run.effort.claim_seconds, 5.0)
+    })?;
 
     let (mut parts, mut for_claim, mut against) = (Vec::new(), 0, 0);
     for ((albedo, r), versions) in CASES.iter().zip(measured.chunks(VERSIONS.len())) {

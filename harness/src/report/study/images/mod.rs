@@ -8,15 +8,15 @@ mod render;
 
 use super::interval::bootstrap_rmse;
 use super::subject::enclosing_ball;
-use super::{Run, Study, Subject};
+use super::{Run, Subject};
 use crate::Failure;
 use crate::field::AnyProfile;
+use crate::parallel::in_parallel;
 use crate::report::result::{ImagePanel, ImageStudy, Series};
 use camera::Camera;
 use exact::{Exact, transmittance};
-use fairflight_sources::derive_seed;
+use fairflight_sources::named_seed;
 use method::Method;
-use rayon::prelude::*;
 use render::{Image, pilot, render};
 
 /// Look-ups per pixel that meets the medium: fig. 9 and fig. 10.
@@ -44,7 +44,7 @@ struct Scene<'a> {
 /// Both studies of a medium.
 pub(super) fn studies(run: &Run<'_>, subject: &Subject) -> Result<Vec<ImageStudy>, Failure> {
     let scene = Scene::new(subject, run.effort.resolution)?;
-    BUDGETS.iter().enumerate().map(|(i, &budget)| study(run, &scene, i as u64, budget)).collect()
+    BUDGETS.iter().map(|&budget| study(run, &scene, budget)).collect()
 }
 
 impl<'a> Scene<'a> {
@@ -56,7 +56,7 @@ impl<'a> Scene<'a> {
                 pixels.push((pixel, profile));
             }
         }
-        let exact = pixels.par_iter().map(|(_, profile)| transmittance(profile)).collect();
+        let exact = in_parallel(pixels.len(), &|i| transmittance(&pixels[i].1));
         let mean_length =
             pixels.iter().map(|(_, profile)| profile.length()).sum::<f64>() / pixels.len() as f64;
         Ok(Self { subject, resolution, pixels, exact, mean_length })
@@ -74,6 +74,8 @@ impl<'a> Scene<'a> {
 
 /// A method with its rays per pixel, and how to name it.
 struct Choice {
+    /// Once per study: its stream has this name.
+    name: &'static str,
     series: Series,
     parameters: String,
     method: Method,
@@ -81,12 +83,13 @@ struct Choice {
     rays: f64,
 }
 
-fn study(run: &Run<'_>, scene: &Scene<'_>, index: u64, budget: f64) -> Result<ImageStudy, Failure> {
-    let seed = |i: u64| run.seed(scene.subject, Study::Images, (index << 8) + i);
-    let choices = choices(scene, budget, seed(0xff))?;
+fn study(run: &Run<'_>, scene: &Scene<'_>, budget: f64) -> Result<ImageStudy, Failure> {
+    let seed = |name: &str| run.seed(format_args!("images/{}/{budget}/{name}", scene.subject.id));
+    let choices = choices(scene, budget, seed("pilot"))?;
     let mut panels = Vec::with_capacity(choices.len());
-    for (i, choice) in choices.into_iter().enumerate() {
-        panels.push(panel(scene, choice, seed(i as u64))?);
+    for choice in choices {
+        let seed = seed(choice.name);
+        panels.push(panel(scene, choice, seed)?);
         run.advance();
     }
     Ok(ImageStudy {
@@ -120,44 +123,43 @@ fn choices(scene: &Scene<'_>, budget: f64, seed: u64) -> Result<Vec<Choice>, Fai
     let own_sigma = (budget - explorers as f64) / mean_length;
     // The paper's step in its sphere of radius 10; the same part of the radius elsewhere.
     let step = STEP * enclosing_ball(&subject.bounds).1 / 10.0;
+    let one_ray = |name, series, parameters, method| Choice { name, series, parameters, method, rays: 1.0 };
     Ok(vec![
-        Choice {
-            series: Series::RayMarching,
-            parameters: format!("one ray, step {step:.3} from its entry, biased; costs what it costs"),
-            method: Method::MarchFromEntry { step },
-            rays: 1.0,
-        },
-        Choice {
-            series: Series::RayMarching,
-            parameters: format!("one ray, midpoints of steps of {:.3}, biased", mean_length / budget),
-            method: Method::March { step: mean_length / budget },
-            rays: 1.0,
-        },
-        Choice { series: Series::Woodcock, parameters: woodcock_name, method: woodcock, rays: rays.max(1.0) },
-        Choice {
-            series: Series::DoubleParticle,
-            parameters: format!("no control, one ray, sigma_samp {sigma_samp:.3} (what the budget allows)"),
-            method: Method::Ratio { sigma_samp },
-            rays: 1.0,
-        },
-        Choice {
-            series: Series::DoubleParticleExplorers,
-            parameters: format!(
-                "{explorers} explorers of the pixel's own ray, paid for; sigma_samp {own_sigma:.3}"
-            ),
-            method: Method::OwnExplorers { count: explorers, sigma_samp: own_sigma },
-            rays: 1.0,
-        },
-        Choice {
-            series: Series::DoubleParticleExplorers,
-            parameters: format!(
+        one_ray(
+            "marching from the entry",
+            Series::RayMarching,
+            format!("one ray, step {step:.3} from its entry, biased; costs what it costs"),
+            Method::MarchFromEntry { step },
+        ),
+        one_ray(
+            "midpoint marching",
+            Series::RayMarching,
+            format!("one ray, midpoints of steps of {:.3}, biased", mean_length / budget),
+            Method::March { step: mean_length / budget },
+        ),
+        Choice { rays: rays.max(1.0), ..one_ray("Woodcock", Series::Woodcock, woodcock_name, woodcock) },
+        one_ray(
+            "no control",
+            Series::DoubleParticle,
+            format!("no control, one ray, sigma_samp {sigma_samp:.3} (what the budget allows)"),
+            Method::Ratio { sigma_samp },
+        ),
+        one_ray(
+            "own explorers",
+            Series::DoubleParticleExplorers,
+            format!("{explorers} explorers of the pixel's own ray, paid for; sigma_samp {own_sigma:.3}"),
+            Method::OwnExplorers { count: explorers, sigma_samp: own_sigma },
+        ),
+        one_ray(
+            "borrowed explorers",
+            Series::DoubleParticleExplorers,
+            format!(
                 "explorers borrowed from the look-ups of the last {} pixels in {} cells; sigma_samp {sigma_samp:.3}",
                 borrowed::RAYS,
                 borrowed::CELLS
             ),
-            method: Method::BorrowedExplorers { sigma_samp },
-            rays: 1.0,
-        },
+            Method::BorrowedExplorers { sigma_samp },
+        ),
     ])
 }
 
@@ -172,7 +174,7 @@ fn panel(scene: &Scene<'_>, choice: Choice, seed: u64) -> Result<ImagePanel, Fai
         pixels: scene.whole(means.into_iter()),
         lookups_per_pixel: lookups as f64 / met,
         rmse: (squares.iter().sum::<f64>() / met).sqrt(),
-        rmse_interval: bootstrap_rmse(&squares, derive_seed(seed, u64::MAX)),
+        rmse_interval: bootstrap_rmse(&squares, named_seed(seed, "bootstrap")),
         seconds,
     })
 }

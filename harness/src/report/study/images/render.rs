@@ -4,9 +4,9 @@ use super::Scene;
 use super::borrowed::{Borrowed, PixelRay};
 use super::method::{Estimate, Method, Pixel};
 use crate::Failure;
+use crate::parallel::try_in_parallel;
 use cpu_time::ThreadTime;
-use fairflight_sources::{Seeded, derive_seed};
-use rayon::prelude::*;
+use fairflight_sources::Seeded;
 
 /// The estimates of the pixels that meet the medium.
 pub(super) struct Image {
@@ -35,24 +35,20 @@ pub(super) fn render(scene: &Scene<'_>, method: Method, rays: f64, seed: u64) ->
     let row_of = |i: usize| scene.pixels[i].0 / scene.resolution;
     let numbered: Vec<usize> = (0..scene.pixels.len()).collect();
     let rows: Vec<&[usize]> = numbered.chunk_by(|&a, &b| row_of(a) == row_of(b)).collect();
-    let rendered: Vec<Result<Image, Failure>> = rows
-        .into_par_iter()
-        .map(|row| {
-            let clock = ThreadTime::now();
-            let mut borrowed = Borrowed::default();
-            let mut image = Image { means: Vec::with_capacity(row.len()), lookups: 0, seconds: 0.0 };
-            for &i in row {
-                let pixel = one(scene, method, rays, seed, i, &mut borrowed)?;
-                image.means.push(pixel.mean);
-                image.lookups += pixel.lookups;
-            }
-            image.seconds = clock.elapsed().as_secs_f64();
-            Ok(image)
-        })
-        .collect();
+    let rendered = try_in_parallel(rows.len(), &|row| {
+        let clock = ThreadTime::now();
+        let mut borrowed = Borrowed::default();
+        let mut image = Image { means: Vec::with_capacity(rows[row].len()), lookups: 0, seconds: 0.0 };
+        for &i in rows[row] {
+            let pixel = one(scene, method, rays, seed, i, &mut borrowed)?;
+            image.means.push(pixel.mean);
+            image.lookups += pixel.lookups;
+        }
+        image.seconds = clock.elapsed().as_secs_f64();
+        Ok(image)
+    })?;
     let mut image = Image { means: Vec::with_capacity(scene.pixels.len()), lookups: 0, seconds: 0.0 };
     for row in rendered {
-        let row = row?;
         image.means.extend(row.means);
         image.lookups += row.lookups;
         image.seconds += row.seconds;
@@ -69,7 +65,7 @@ fn one(
     borrowed: &mut Borrowed,
 ) -> Result<Pixel, Failure> {
     let (number, profile) = &scene.pixels[index];
-    let mut source = Seeded::new(derive_seed(seed, *number as u64));
+    let mut source = Seeded::for_batch(seed, *number as u64);
     let estimate = Estimate {
         method,
         rays: rays_of(index, rays),

@@ -129,8 +129,10 @@ fn plane() -> HeatMap {
         panels: PROFILES.iter().enumerate().map(panel).collect(),
     };
     let tightness = Axis::logarithmic("tightness of the majorant [1]");
-    HeatMap::new("plane", "Efficiency over the plane", transmittance(), tightness, content)
-        .with_caption("Made up: no value in the lower left <corner>.")
+    HeatMap {
+        caption: "Made up: no value in the lower left <corner>.".to_owned(),
+        ..HeatMap::new("plane", "Efficiency over the plane", transmittance(), tightness, content)
+    }
 }
 
 fn transmittance() -> Axis {

@@ -3,16 +3,8 @@
 use super::super::write_all_or_nothing;
 use super::*;
 use crate::report::document::{Chart, GalleryRow, Picture};
+use crate::testing::{linked_files, names};
 use std::fs;
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
 
 fn written() -> tempfile::TempDir {
     let root = tempfile::tempdir().unwrap();
@@ -92,18 +84,7 @@ fn the_page_needs_no_network_and_its_links_lead_somewhere() {
     let folder = root.path().join("made-up");
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
     assert!(page.starts_with("<!doctype html>"));
-    assert!(!page.contains("http://") && !page.contains("https://"));
-    let mut files = Vec::new();
-    for link in page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()) {
-        match link.strip_prefix('#') {
-            Some(id) => assert!(page.contains(&format!("id=\"{id}\"")), "{link}"),
-            None if link.starts_with("data:") => {}
-            None => {
-                assert!(folder.join(link).is_file(), "{link}");
-                files.push(link.to_owned());
-            }
-        }
-    }
+    let files = linked_files(&page, &folder);
     // Everything beside the page can be reached from it.
     for name in names(&folder).iter().filter(|name| *name != "index.html") {
         assert!(files.contains(name), "{name}");
