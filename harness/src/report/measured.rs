@@ -98,6 +98,10 @@ fn quantile(values: &[f64]) -> f64 {
 
 /// The mean of independent numbers and its standard error, NaN where there is none.
 pub(super) fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    // An image of one sample per pixel knows no variance.
+    if values.iter().any(|value| !value.is_finite()) {
+        return (f64::NAN, f64::NAN);
+    }
     let moments = Moments::from_slice(values);
     (moments.mean().unwrap_or(f64::NAN), moments.standard_error().unwrap_or(f64::NAN))
 }
@@ -134,6 +138,7 @@ mod tests {
         let factor = (12.706_f64 * 2.0_f64.ln()).exp();
         assert!((high / 2.5 / factor - 1.0).abs() < 1e-3 && (2.5 / low / factor - 1.0).abs() < 1e-3);
         assert!(Measured::positive(&[1.0, 0.0]).interval[0].is_nan());
+        assert!(Measured::positive(&[f64::NAN; 2]).value.is_nan());
     }
 
     #[test]
