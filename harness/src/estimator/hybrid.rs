@@ -144,7 +144,7 @@ mod tests {
         let mut experience = Experience::default();
         let mut source = fairflight_sources::Seeded::new(1);
         (0..8).for_each(|_| {
-            experience.observe(&Pilot::of(&Bounded::new(&constant, 1.0).unwrap(), &mut source))
+            experience.observe(&Pilot::of(&Bounded::new(&constant, 1.0).unwrap(), &mut source));
         });
         let choices = Choices::of(&experience, 1.0, 16.0);
         for (length, class) in [
