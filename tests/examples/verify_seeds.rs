@@ -11,6 +11,7 @@
 use fairflight_stats::Binomial;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// The p-values that are counted lie below this.
@@ -63,11 +64,23 @@ impl Shares {
 
 fn main() -> ExitCode {
     let files: Vec<String> = std::env::args().skip(1).collect();
+    match summarise(&files, &mut std::io::stdout().lock()) {
+        Ok(true) => ExitCode::SUCCESS,
+        // Whoever reads it may close the pipe early: no verdict is known then.
+        Ok(false) | Err(_) => ExitCode::FAILURE,
+    }
+}
+
+/// Writes what the files say; whether no check raised an alarm, all were testable, and no share is off.
+///
+/// # Errors
+/// If it cannot be written.
+fn summarise(files: &[String], out: &mut impl Write) -> io::Result<bool> {
     let (mut alarms, mut untestable, mut runs, mut checks) = (Vec::new(), Vec::new(), 0, 0);
     let mut weakest: BTreeMap<String, f64> = BTreeMap::new();
     let mut shares: BTreeMap<String, Shares> = BTreeMap::new();
     let mut counts: BTreeMap<(String, String), Count> = BTreeMap::new();
-    for file in &files {
+    for file in files {
         let text = std::fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
         let run: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"));
         let seed = &run["provenance"]["seed"];
@@ -98,23 +111,30 @@ fn main() -> ExitCode {
             }
         }
     }
-    println!("{runs} runs, {checks} checks: {} alarms, {} not testable", alarms.len(), untestable.len());
+    writeln!(
+        out,
+        "{runs} runs, {checks} checks: {} alarms, {} not testable",
+        alarms.len(),
+        untestable.len()
+    )?;
     for line in alarms.iter().chain(&untestable) {
-        println!("  {line}");
+        writeln!(out, "  {line}")?;
     }
-    println!("\nleast powerful:");
+    writeln!(out, "\nleast powerful:")?;
     for (bias, id) in greatest(weakest.iter().map(|(id, bias)| (*bias, id))) {
-        println!("  {bias:.3}  {id}");
+        writeln!(out, "  {bias:.3}  {id}")?;
     }
-    println!(
+    writeln!(
+        out,
         "\nnearest to untestable (greatest share of N that a normal approximation asked for; standard deviations to 1):"
-    );
+    )?;
     for (share, id) in greatest(shares.iter().map(|(id, shares)| (shares.greatest(), id))) {
-        println!("  {share:.3}  {:6.1}  {id}", shares[id].margin());
+        writeln!(out, "  {share:.3}  {:6.1}  {id}", shares[id].margin())?;
     }
-    println!(
+    writeln!(
+        out,
         "\n| level | of | p-values | below {SMALL} | share | 95 % of {SMALL} |\n|---|---|---|---|---|---|"
-    );
+    )?;
     let mut off = false;
     for ((level, of), count) in &counts {
         let (low, high, is_within) = count.judge(level == "exact");
@@ -122,9 +142,13 @@ fn main() -> ExitCode {
         off |= of == "all" && !is_within && level != "studentised";
         let share = count.small as f64 / count.all as f64;
         let mark = if is_within { "" } else { " *" };
-        println!("| {level} | {of} | {} | {} | {share:.4}{mark} | {low} to {high} |", count.all, count.small);
+        writeln!(
+            out,
+            "| {level} | {of} | {} | {} | {share:.4}{mark} | {low} to {high} |",
+            count.all, count.small
+        )?;
     }
-    if alarms.is_empty() && untestable.is_empty() && !off { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    Ok(alarms.is_empty() && untestable.is_empty() && !off)
 }
 
 /// The ten greatest, in order.
@@ -133,4 +157,26 @@ fn greatest<'a>(values: impl Iterator<Item = (f64, &'a String)>) -> Vec<(f64, &'
     values.sort_by(|a, b| b.0.total_cmp(&a.0));
     values.truncate(10);
     values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_closed_pipe_is_no_panic() {
+        struct Closed;
+        impl Write for Closed {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::BrokenPipe.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        assert_eq!(summarise(&[], &mut Closed).unwrap_err().kind(), io::ErrorKind::BrokenPipe);
+        let mut text = Vec::new();
+        assert!(summarise(&[], &mut text).unwrap());
+        assert!(String::from_utf8(text).unwrap().starts_with("0 runs"));
+    }
 }
