@@ -1,14 +1,21 @@
 //! The command line.
 
+use crate::progress::ProgressForm;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Measures, verifies, renders and reports unbiased estimators of volumetric light transport.
 ///
-/// Without a subcommand it writes the standard report to reports/standard.
+/// Without a subcommand it writes the standard report to reports/standard in the working directory.
 #[derive(Debug, Parser)]
 #[command(name = "harness", version, max_term_width = 100)]
 pub(crate) struct Cli {
+    /// Neither progress nor notes: results, warnings and refusals only
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Progress on standard error
+    #[arg(long, value_name = "FORM", global = true, conflicts_with = "quiet", value_enum, default_value_t)]
+    pub progress: ProgressForm,
     /// What to do.
     #[command(subcommand)]
     pub command: Option<Command>,
@@ -19,14 +26,15 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Write a report: variance and efficiency against sigma_samp, speed against error, claims, hard cases
     Report(ReportArguments),
-    /// Measure one experiment, or a sweep of them, given as JSON; the result goes to standard output
+    /// Measure one experiment, or a sweep of them, given as JSON; the result goes to standard output: a table on a
+    /// terminal, else JSON
     Estimate(EstimateArguments),
-    /// Say which estimator of transmittance along rays to use in a medium; a table on standard error, JSON on
-    /// standard output
+    /// Say which estimator of transmittance along rays to use in a medium: a table on a terminal, else JSON with the
+    /// table on standard error
     Advise(AdviseArguments),
-    /// Render a scene, given as JSON, into images and statistics
+    /// Render a scene, or a sweep of them, given as JSON, into images and statistics
     Render(RenderArguments),
-    /// Check all laws over all estimators, media and hard cases; exit code 1 if one fails
+    /// Check all laws over all estimators, media and hard cases: a table; exit code 1 if one fails
     Verify(VerifyArguments),
     /// List reports, and all kinds of profiles, media, estimators, integrators and parts of scenes with their keys
     List,
@@ -34,6 +42,25 @@ pub(crate) enum Command {
     Info(InfoArguments),
     /// Print the JSON Schema of experiments and scenes: with it editors check and complete them
     Schema(SchemaArguments),
+    /// Print what completes this command line in a shell; its manual says where to put it
+    Completions(CompletionsArguments),
+    /// Write manual pages into a folder: harness.1, harness-estimate.1, and so on
+    Man(ManArguments),
+}
+
+/// Arguments of `completions`.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct CompletionsArguments {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+/// Arguments of `man`.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ManArguments {
+    /// The folder, made if there is none
+    #[arg(value_name = "FOLDER")]
+    pub folder: PathBuf,
 }
 
 /// Arguments of `info`.
@@ -73,7 +100,7 @@ pub(crate) struct ReportArguments {
     /// A factor in front of its values
     #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
     pub scale: f64,
-    /// Where to write [default: reports/NAME]
+    /// Where to write [default: reports/NAME in the working directory]
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
     /// The seed of all variates
@@ -110,6 +137,9 @@ pub(crate) struct EstimateArguments {
     /// The experiment; - reads standard input
     #[arg(value_name = "SPEC.json")]
     pub spec: PathBuf,
+    /// JSON on a terminal too
+    #[arg(long)]
+    pub json: bool,
     /// Instead of the spec's samples
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     pub samples: Option<u64>,
@@ -140,6 +170,9 @@ pub(crate) struct AdviseArguments {
     /// A factor in front of its values
     #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
     pub scale: f64,
+    /// JSON on a terminal too, and no table
+    #[arg(long)]
+    pub json: bool,
     /// An upper bound of the extinction [default: what the medium declares]
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     pub majorant: Option<f64>,
@@ -163,13 +196,17 @@ pub(crate) struct RenderArguments {
     /// The scene; - reads standard input
     #[arg(value_name = "SCENE.json")]
     pub scene: PathBuf,
-    /// Where to write, by extension: .pfm and .exr linear radiance, .png tone-mapped, .json statistics; may be repeated
+    /// Where to write, by extension: .pfm and .exr linear radiance, .png tone-mapped, .json statistics; may be repeated.
+    /// The images of a sweep are numbered from 0: NAME-0.png for the first value of NAME.png
     #[arg(long, value_name = "IMAGE", required = true)]
     pub out: Vec<PathBuf>,
     /// An image (.pfm or .exr) to measure the error against
     #[arg(long, value_name = "IMAGE")]
     pub reference: Option<PathBuf>,
-    /// Stop after the pass of one sample per pixel in which this time runs out; not for photons
+    /// The exposure of .png files: 2^STOPS times linear radiance is shown [default: that of a small pilot image]
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: Option<f64>,
+    /// Stop after the pass of one sample per pixel in which this time runs out, for each image; not for photons
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub time_limit: Option<f64>,
     /// Instead of the scene's samples per pixel
@@ -190,6 +227,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
         _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
+fn stops(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (-100.0..=100.0).contains(&number) => Ok(number),
+        _ => Err("must be a number from -100 to 100".to_owned()),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Where a run takes place: its command, its revision, its threads, its terminal.
 
 use crate::Failure;
+use crate::progress::{Progress, ProgressForm};
 use crate::result::Provenance;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ffi::OsString;
 
 /// The program that runs the library.
@@ -10,6 +10,8 @@ use std::ffi::OsString;
 pub struct Host {
     /// Standard error is a terminal: progress bars are drawn.
     pub progress: bool,
+    /// Standard output is a terminal: results are shown as tables.
+    pub tables: bool,
     /// The revision of the checkout that the program was built from, with a word about changes; the version where there was none.
     pub revision: &'static str,
 }
@@ -17,7 +19,7 @@ pub struct Host {
 /// No terminal, no checkout.
 impl Default for Host {
     fn default() -> Self {
-        Self { progress: false, revision: concat!("v", env!("CARGO_PKG_VERSION")) }
+        Self { progress: false, tables: false, revision: concat!("v", env!("CARGO_PKG_VERSION")) }
     }
 }
 
@@ -26,6 +28,8 @@ impl Default for Host {
 pub struct Environment {
     command: String,
     host: Host,
+    quiet: bool,
+    form: ProgressForm,
 }
 
 impl Environment {
@@ -34,7 +38,25 @@ impl Environment {
     pub fn new(arguments: &[OsString], host: Host) -> Self {
         let words = arguments.iter().skip(1).map(|word| quoted(&word.to_string_lossy()));
         let command = std::iter::once("harness".to_owned()).chain(words).collect::<Vec<_>>().join(" ");
-        Self { command, host }
+        Self { command, host, quiet: false, form: ProgressForm::Bar }
+    }
+
+    /// The same surroundings, in which notes and progress are told as asked for.
+    #[must_use]
+    pub fn telling(self, quiet: bool, form: ProgressForm) -> Self {
+        Self { quiet, form, ..self }
+    }
+
+    /// Whether notes for a person are left out.
+    #[must_use]
+    pub fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
+    /// Whether results are shown as tables, unless JSON is asked for.
+    #[must_use]
+    pub fn shows_tables(&self) -> bool {
+        self.host.tables
     }
 
     /// The command as a person would type it.
@@ -46,19 +68,24 @@ impl Environment {
     /// Where the numbers of `seed` come from.
     #[must_use]
     pub fn provenance(&self, seed: u64) -> Provenance {
-        Provenance { seed, revision: self.host.revision.to_owned(), command: self.command.clone() }
+        let revision = self.host.revision.to_owned();
+        Provenance { seed, revision, command: self.command.clone(), spec: None }
     }
 
-    /// A progress bar of `length` steps, drawn if there is a terminal.
+    /// Whether progress is told as bars: only where there is a terminal.
     #[must_use]
-    pub fn progress(&self, length: u64, what: &'static str) -> ProgressBar {
-        if !self.host.progress {
-            return ProgressBar::hidden();
+    pub fn draws_bars(&self) -> bool {
+        self.host.progress && self.form == ProgressForm::Bar && !self.quiet
+    }
+
+    /// Progress of `length` steps, told as was asked for.
+    #[must_use]
+    pub fn progress(&self, length: u64, what: &'static str) -> Progress {
+        match self.form {
+            ProgressForm::Json => Progress::lines(length, what),
+            ProgressForm::Bar if self.draws_bars() => Progress::bar(length, what),
+            ProgressForm::Bar => Progress::hidden(),
         }
-        let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} % {eta}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
-        bar.with_style(style).with_message(what)
     }
 
     /// Runs `work` on `threads` threads, or on all cores.

@@ -256,6 +256,9 @@ fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> S
     let errors =
         if known { "standard errors: closed-form moments" } else { "standard errors: sample moments" };
     let mut method = format!("optical thickness: {thickness}; {variance}; {errors}");
+    if plan.profile.misses() {
+        method.push_str("; the ray misses the medium: T = 1");
+    }
     if truth.transmittance() == 0.0 {
         method.push_str("; the transmittance underflows to 0 in double precision");
     }

@@ -1,5 +1,6 @@
 //! Why a run ends without a result, and with which exit code.
 
+use serde_json::Value;
 use std::fmt;
 use std::path::Path;
 
@@ -44,6 +45,15 @@ impl Failure {
             Self::Refused(reason) => Self::refused(format!("{place}: {reason}")),
             Self::NotWritten(reason) => Self::NotWritten(format!("{place}: {reason}")),
             Self::Interrupted => Self::Interrupted,
+        }
+    }
+
+    /// The same failure, at a value of the swept key, if there is one.
+    #[must_use]
+    pub fn at(self, value: Option<&Value>) -> Self {
+        match value {
+            Some(value) => self.within(format!("sweep value {value}")),
+            None => self,
         }
     }
 

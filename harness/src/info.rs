@@ -2,7 +2,7 @@
 
 use crate::cli::InfoArguments;
 use crate::field::{glam_affine, grown_bounds};
-use crate::{DONE, Failure};
+use crate::{DONE, Failure, print};
 use fairflight_media::Bounds;
 use fairflight_volumes::{GridInfo, VoxelGrid, grids, read_float_grid};
 use glam::DVec3;
@@ -114,9 +114,7 @@ pub(crate) fn run(arguments: &InfoArguments, stdout: &mut dyn Write) -> Result<i
     } else {
         described(file, &found)
     };
-    stdout
-        .write_all(text.as_bytes())
-        .map_err(|error| Failure::NotWritten(format!("cannot write to standard output: {error}")))?;
+    print(stdout, &text)?;
     Ok(DONE)
 }
 

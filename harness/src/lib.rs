@@ -12,8 +12,12 @@ mod environment;
 mod estimate;
 mod failure;
 mod info;
+mod input;
 mod parallel;
+mod partial;
 mod render;
+mod shell;
+mod table;
 #[cfg(test)]
 mod testing;
 mod verify;
@@ -27,6 +31,7 @@ pub mod image;
 pub mod interrupt;
 pub mod measure;
 pub mod plan;
+pub mod progress;
 pub mod reader;
 pub mod reference;
 pub mod report;
@@ -57,7 +62,7 @@ pub fn run(
         Ok(cli) => cli,
         Err(error) => return answer_without_running(&error, stdout, stderr),
     };
-    let environment = Environment::new(&arguments, host);
+    let environment = Environment::new(&arguments, host).telling(cli.quiet, cli.progress);
     let outcome = match cli.command {
         Some(Command::Estimate(arguments)) => estimate::run(&arguments, &environment, stdin, stdout, stderr),
         Some(Command::Advise(arguments)) => advise::run(&arguments, &environment, stdin, stdout, stderr),
@@ -66,6 +71,8 @@ pub fn run(
         Some(Command::Info(arguments)) => info::run(&arguments, stdout),
         Some(Command::List) => vocabulary::list(stdout),
         Some(Command::Schema(arguments)) => vocabulary::print_schema(arguments, stdout),
+        Some(Command::Completions(arguments)) => shell::completions(arguments, stdout),
+        Some(Command::Man(arguments)) => shell::manual(&arguments),
         Some(Command::Report(arguments)) => report::command::run(&arguments, &environment, stderr),
         None => report::command::run(&ReportArguments::default(), &environment, stderr),
     };
@@ -75,13 +82,19 @@ pub fn run(
             let interrupted = failure == Failure::Interrupted;
             // The line of a progress bar that was given up has no end yet. Nobody is left to tell if standard
             // error is closed.
-            let gap = if interrupted && host.progress { "\n" } else { "" };
+            let gap = if interrupted && environment.draws_bars() { "\n" } else { "" };
             if !interrupted || interrupt::ends_here() {
                 let _ = writeln!(stderr, "{gap}{failure}");
             }
             failure.code()
         }
     }
+}
+
+/// Puts a result on standard output.
+fn print(stdout: &mut dyn Write, text: &str) -> Result<(), Failure> {
+    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    written.map_err(|error| Failure::NotWritten(format!("cannot write to standard output: {error}")))
 }
 
 /// Help and version go to standard output with code 0, a command line that cannot be read is refused.

@@ -2,6 +2,24 @@
 
 use fairflight_stats::Verdict;
 use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+/// The results of a sweep.
+#[derive(Clone, Debug, Serialize)]
+pub struct SweepResult<R> {
+    /// One for each value, in their order.
+    pub points: Vec<SweepPoint<R>>,
+}
+
+/// The result at one value of the swept key.
+#[derive(Clone, Debug, Serialize)]
+pub struct SweepPoint<R> {
+    /// The value.
+    pub value: Value,
+    /// The result, among whose keys the value stands.
+    #[serde(flatten)]
+    pub result: R,
+}
 
 /// The result of one experiment, in the form of the published spec.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,7 +137,7 @@ impl From<Verdict> for VerdictResult {
 }
 
 /// Where a number comes from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Provenance {
     /// The seed of the variates.
     pub seed: u64,
@@ -127,6 +145,18 @@ pub struct Provenance {
     pub revision: String,
     /// The command that made it.
     pub command: String,
+    /// The spec that the command read; without one there are no such keys.
+    #[serde(flatten)]
+    pub spec: Option<RecordedSpec>,
+}
+
+/// A spec as a command read it: with it the command can be run again, whatever has become of the file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RecordedSpec {
+    /// The spec, before options of the command stand for its keys.
+    pub spec: Value,
+    /// The SHA-256 of its bytes, in hexadecimal digits.
+    pub spec_sha256: String,
 }
 
 /// JSON has no infinity: it is written as a word, and null means that a quantity does not exist.

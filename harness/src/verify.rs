@@ -5,7 +5,7 @@ use crate::estimator::EstimatorSpec;
 use crate::reader::similar;
 use crate::result::{Provenance, number};
 use crate::spec::IntegratorSpec;
-use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
+use crate::{DONE, Environment, Failure, UNSOUND, interrupt, print};
 use fairflight_catalogue::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, catalogue, check_level};
 use fairflight_laws::CheckResult;
 use rayon::prelude::*;
@@ -35,16 +35,17 @@ pub(crate) fn run(
             })
             .collect()
     })?;
-    bar.finish_and_clear();
+    bar.finish();
     let provenance = environment.provenance(arguments.seed);
+    // A pipe gets the table too, unless JSON is asked for: it always has, and logs are read by people.
     let text = if arguments.json {
         json(&checks, &results, &provenance)?
+    } else if environment.is_quiet() {
+        table(&checks, &results)
     } else {
-        table(&checks, &results, &provenance)
+        table(&checks, &results) + &notes(&results, &provenance)
     };
-    stdout
-        .write_all(text.as_bytes())
-        .map_err(|error| Failure::NotWritten(format!("cannot write the result: {error}")))?;
+    print(stdout, &text)?;
     Ok(if results.iter().any(|result| result.holds == Some(false)) { UNSOUND } else { DONE })
 }
 
@@ -72,7 +73,8 @@ fn kinds(all: &[Check]) -> Vec<&'static str> {
     names
 }
 
-fn table(checks: &[Check], results: &[CheckResult], provenance: &Provenance) -> String {
+/// A line for each check, and how many hold.
+fn table(checks: &[Check], results: &[CheckResult]) -> String {
     let width =
         |column: fn(&Check) -> &str| checks.iter().map(|c| column(c).chars().count()).max().unwrap_or(0);
     let id_width = width(|check| &check.id);
@@ -106,27 +108,33 @@ fn table(checks: &[Check], results: &[CheckResult], provenance: &Provenance) -> 
         }
     }
     let count = |holds: Option<bool>| results.iter().filter(|result| result.holds == holds).count();
-    let worst = results.iter().filter_map(|r| r.detectable_relative_bias).fold(0.0, f64::max);
-    let mut powers: Vec<f64> = results.iter().filter_map(|result| result.detectable_relative_bias).collect();
-    powers.sort_unstable_by(f64::total_cmp);
-    let median = powers.get(powers.len() / 2).copied().unwrap_or(f64::NAN);
     let _ = writeln!(
         text,
-        "\n{} checks: {} hold, {} do not hold, {} not testable at this N\n\
-         false alarm of the whole catalogue below {FAMILY_LEVEL:e} ({:.2e} per check, for up to {FAMILY_SIZE}); power: with \
-         probability 0.99 a relative bias of {median:.1e} would have been found (median over the checks), {worst:.1e} in the \
-         least powerful\n\
-         seed {}, revision {}, {}",
+        "\n{} checks: {} hold, {} do not hold, {} not testable at this N",
         checks.len(),
         count(Some(true)),
         count(Some(false)),
         count(None),
+    );
+    text
+}
+
+/// False alarm and power of all checks together, and where they come from.
+fn notes(results: &[CheckResult], provenance: &Provenance) -> String {
+    let worst = results.iter().filter_map(|r| r.detectable_relative_bias).fold(0.0, f64::max);
+    let mut powers: Vec<f64> = results.iter().filter_map(|result| result.detectable_relative_bias).collect();
+    powers.sort_unstable_by(f64::total_cmp);
+    let median = powers.get(powers.len() / 2).copied().unwrap_or(f64::NAN);
+    format!(
+        "false alarm of the whole catalogue below {FAMILY_LEVEL:e} ({:.2e} per check, for up to {FAMILY_SIZE}); power: with \
+         probability 0.99 a relative bias of {median:.1e} would have been found (median over the checks), {worst:.1e} in the \
+         least powerful\n\
+         seed {}, revision {}, {}\n",
         check_level(),
         provenance.seed,
         provenance.revision,
         provenance.command,
-    );
-    text
+    )
 }
 
 /// One check with what it found.

@@ -9,7 +9,7 @@ use crate::reader::kind::{Key, object_schema, plain};
 use crate::reader::rule::{Ruled, vector_schema};
 use crate::report::registry::REPORTS;
 use crate::spec::{ColourSpec, IntegratorSpec, LightSpec, MaterialSpec, PhaseSpec, ShapeSpec};
-use crate::{DONE, Failure};
+use crate::{DONE, Failure, print};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::io::Write;
@@ -107,21 +107,24 @@ fn root(keys: &[Key]) -> Value {
     object_schema(properties, keys, Vec::new())
 }
 
-fn experiment() -> Value {
-    let sweep = object_schema(
+fn sweep() -> Value {
+    object_schema(
         Map::new(),
         &[
             Key::required("path", "The key that is swept, with points between.", json!({ "type": "string" })),
             Key::required("values", "Its values.", json!({ "type": "array", "minItems": 1 })),
         ],
         Vec::new(),
-    );
+    )
+}
+
+fn experiment() -> Value {
     root(&[
         Key::required("profile", "The extinction along the ray.", defined("profile")),
         Key::required("estimator", "The estimator of its transmittance.", defined("estimator")),
         Key::optional("samples", "Estimates; --samples stands for it.", whole(1)),
         Key::optional("seed", "The seed of all variates; --seed stands for it.", whole(0)),
-        Key::optional("sweep", "One key, with many values.", sweep),
+        Key::optional("sweep", "One key, with many values.", sweep()),
     ])
 }
 
@@ -157,14 +160,8 @@ fn scene() -> Value {
             "Whether albedo and reflectance may exceed 1.",
             json!({ "type": "boolean" }),
         ),
+        Key::optional("sweep", "One key, with many values: an image for each.", sweep()),
     ])
-}
-
-fn written(text: &str, stdout: &mut dyn Write) -> Result<i32, Failure> {
-    stdout
-        .write_all(text.as_bytes())
-        .map_err(|error| Failure::NotWritten(format!("cannot write to standard output: {error}")))?;
-    Ok(DONE)
 }
 
 /// `harness list`.
@@ -188,12 +185,14 @@ pub(crate) fn list(stdout: &mut dyn Write) -> Result<i32, Failure> {
             entry(if k == 0 { things.title } else { "" }, kind.name, &keys, kind.about);
         }
     }
-    written(&list, stdout)
+    print(stdout, &list)?;
+    Ok(DONE)
 }
 
 /// `harness schema`.
 pub(crate) fn print_schema(arguments: SchemaArguments, stdout: &mut dyn Write) -> Result<i32, Failure> {
-    written(&if arguments.tables { tables() } else { format!("{:#}\n", schema()) }, stdout)
+    print(stdout, &if arguments.tables { tables() } else { format!("{:#}\n", schema()) })?;
+    Ok(DONE)
 }
 
 /// The part of docs/SPEC.md that is made from the registries: a section for each thing, a table for each kind.

@@ -14,7 +14,11 @@ fn main() -> std::process::ExitCode {
         &mut io::stdin().lock(),
         &mut io::stdout().lock(),
         &mut io::stderr(),
-        Host { progress: io::stderr().is_terminal(), revision: env!("FAIRFLIGHT_REVISION") },
+        Host {
+            progress: io::stderr().is_terminal(),
+            tables: io::stdout().is_terminal(),
+            revision: env!("FAIRFLIGHT_REVISION"),
+        },
     );
     std::process::ExitCode::from(u8::try_from(code).unwrap_or(u8::MAX))
 }

@@ -2,6 +2,7 @@
 
 use crate::comparison::{Bout, Entrant, Facts, Gain, RaySet};
 use crate::result::Provenance;
+use crate::table::digits;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -181,33 +182,23 @@ impl Answer {
                 advantage(&advice.gain_per_second),
             ));
         }
-        table.push_str("\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n");
+        table
+    }
+
+    /// The meaning of the columns, and what is not certain.
+    pub(super) fn notes(&self) -> String {
+        let mut notes = "\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n".to_owned();
         if self.uncertified > 0 {
             let (count, rays) = (self.uncertified, self.rays);
-            table.push_str(&format!(
+            notes.push_str(&format!(
                 "the transmittance of {count} of {rays} rays is not certified: features of sigma_t may have been missed there\n"
             ));
         }
-        table
+        notes
     }
 }
 
 /// Three digits.
 fn short(value: f64) -> String {
-    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
-        return format!("{value:.2e}");
-    }
-    let digits = if value == 0.0 { 2 } else { (2 - value.abs().log10().floor() as i32).clamp(0, 5) as usize };
-    format!("{value:.digits$}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn three_digits() {
-        let found = [1.0, 12.34, 123.4, 0.012_34, 1.234e7, 0.0].map(short);
-        assert_eq!(found, ["1.00", "12.3", "123", "0.0123", "1.23e7", "0.00"]);
-    }
+    digits(value, 3)
 }

@@ -10,7 +10,7 @@ mod trial;
 
 use crate::budget::Budget;
 use crate::cli::AdviseArguments;
-use crate::{DONE, Environment, Failure};
+use crate::{DONE, Environment, Failure, print};
 use std::io::{Read, Write};
 
 pub(crate) fn run(
@@ -29,10 +29,17 @@ pub(crate) fn run(
     }
     let answer = environment
         .on_threads(arguments.threads, || trial::answer(&question, &rays, arguments.seed, environment))?;
-    let _ = write!(stderr, "{}", answer.table());
+    let notes = if environment.is_quiet() { String::new() } else { answer.notes() };
+    if environment.shows_tables() && !arguments.json {
+        print(stdout, &(answer.table() + &notes))?;
+        return Ok(DONE);
+    }
+    // Beside JSON the table is itself a note.
+    if !arguments.json && !environment.is_quiet() {
+        let _ = write!(stderr, "{}{notes}", answer.table());
+    }
     let json = serde_json::to_string_pretty(&answer)
         .map_err(|error| Failure::refused(format!("the answer: {error}")))?;
-    writeln!(stdout, "{json}")
-        .map_err(|error| Failure::NotWritten(format!("cannot write the answer: {error}")))?;
+    print(stdout, &(json + "\n"))?;
     Ok(DONE)
 }

@@ -1,14 +1,15 @@
 //! What is asked: a medium, and the rays that matter in it.
 
-use crate::Failure;
 use crate::cli::AdviseArguments;
 use crate::comparison::{RaySet, chords};
-use crate::estimate::{folder_of, named, read};
 use crate::field::MediumSpec;
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
+use crate::input::Input;
 use crate::reader::{Node, json};
 use crate::report::document::Volume;
-use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec};
+use crate::result::Provenance;
+use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec, refuse_other};
+use crate::{Environment, Failure};
 use fairflight_media::{Bounds, Medium, Tolerance};
 use fairflight_scene::Camera;
 use fairflight_sources::{Seeded, UniformSource, named_seed};
@@ -31,6 +32,8 @@ const ALTERNATIVES: &str = "what a picture costs is not measured; advice is give
 pub(super) struct Question {
     /// What it is called in the answer.
     pub(super) name: String,
+    /// What was read; without it the command line says all.
+    input: Option<Input>,
     medium: AnyMedium,
     bounds: Bounds,
     camera: Option<Camera>,
@@ -59,34 +62,48 @@ fn made_of_transmittance(scene: &SceneSpec, volume: &VolumeSpec) -> Result<(), F
 impl Question {
     pub(super) fn of(arguments: &AdviseArguments, stdin: &mut dyn Read) -> Result<Self, Failure> {
         let library = MediumLibrary::default();
-        let question = |name: String, spec: &MediumSpec, camera| -> Result<Self, Failure> {
-            let (medium, bounds) =
-                spec.kind().build(&library, "medium").map_err(|failure| failure.within(&name))?;
-            let &AdviseArguments { rays, seed, majorant, .. } = arguments;
-            Ok(Self { name, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
-        };
+        let question =
+            |name: String, input: Option<Input>, spec: &MediumSpec, camera| -> Result<Self, Failure> {
+                let (medium, bounds) =
+                    spec.kind().build(&library, "medium").map_err(|failure| failure.within(&name))?;
+                let &AdviseArguments { rays, seed, majorant, .. } = arguments;
+                Ok(Self { name, input, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
+            };
         if let Some(file) = &arguments.vdb {
             let volume = Volume { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
-            return question(file.display().to_string(), &volume.medium(), None);
+            return question(file.display().to_string(), None, &volume.medium(), None);
         }
         let Some(file) = &arguments.medium else {
             return Err(Failure::refused("advise: give MEDIUM.json or --vdb FILE"));
         };
-        let name = named(file);
+        let input = Input::read(file, stdin)?;
+        let name = input.name();
         let in_file = |failure: Failure| failure.within(&name);
-        let text = read(file, stdin).map_err(in_file)?;
-        let value = json::parse(&text).map_err(in_file)?;
+        let value = json::parse(input.text()).map_err(in_file)?;
         if value.get("camera").is_some() {
             let overrides = SceneOverrides { samples_per_pixel: Some(1), seed: Some(arguments.seed) };
-            let scene = SceneSpec::parse_in(&text, folder_of(file), overrides).map_err(in_file)?;
+            let scene = SceneSpec::parse_in(input.text(), input.folder(), overrides).map_err(in_file)?;
             let volume = scene.medium.as_ref().ok_or_else(|| {
                 in_file(Failure::refused("medium: this scene has none, there is nothing to estimate"))
             })?;
             made_of_transmittance(&scene, volume).map_err(in_file)?;
-            return question(name.clone(), &volume.medium, Some(scene.camera));
+            return question(name, Some(input), &volume.medium, Some(scene.camera));
         }
-        let spec = MediumSpec::read(&Node::root_in(&value, folder_of(file))).map_err(in_file)?;
-        question(name, &spec, None)
+        let root = Node::root_in(&value, input.folder());
+        root.object().and_then(|object| refuse_other("kind", "medium", &object)).map_err(in_file)?;
+        let spec = MediumSpec::read(&root).map_err(in_file)?;
+        question(name, Some(input), &spec, None)
+    }
+
+    /// Where the numbers of `seed` come from.
+    ///
+    /// # Errors
+    /// If what was read is no JSON.
+    pub(super) fn provenance(&self, environment: &Environment, seed: u64) -> Result<Provenance, Failure> {
+        match &self.input {
+            Some(input) => input.provenance(environment, seed),
+            None => Ok(environment.provenance(seed)),
+        }
     }
 
     /// The rays with their truth.

@@ -90,7 +90,7 @@ pub(super) fn answer(
             .push((expected.entrant, bouts_of(&expected.entrant, set, &facts, MEASUREMENT, seed, &|| ())?));
         progress.inc(1);
     }
-    progress.finish_and_clear();
+    progress.finish();
     let baseline = measured[0].1.clone();
     let mut advice: Vec<Advice> = measured
         .iter()
@@ -101,7 +101,8 @@ pub(super) fn answer(
         .collect();
     advice.sort_by(|a, b| b.gain_per_lookup.value.total_cmp(&a.gain_per_lookup.value));
     let contestants = expected.iter().map(|e| Contestant::of(e.entrant.name, e.log_price, e.how)).collect();
-    Ok(Answer::new(&question.name, set, advice, contestants, environment.provenance(seed)))
+    let provenance = question.provenance(environment, seed)?;
+    Ok(Answer::new(&question.name, set, advice, contestants, provenance))
 }
 
 /// A forecast on every ray, or a trial on some.

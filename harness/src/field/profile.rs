@@ -115,6 +115,16 @@ impl AnyProfile {
         }
     }
 
+    /// Whether this is a ray that meets nothing of its medium.
+    #[must_use]
+    pub fn misses(&self) -> bool {
+        let is_ray = !matches!(
+            self,
+            Self::Constant(_) | Self::PiecewiseConstant(_) | Self::PiecewiseLinear(_) | Self::Expression(_)
+        );
+        is_ray && self.length() == 0.0
+    }
+
     /// The length of the profile.
     #[must_use]
     pub fn length(&self) -> f64 {

@@ -2,28 +2,42 @@
 
 use super::Image;
 
-/// The factor in front of radiance before it is displayed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exposure(f64);
-
-impl Default for Exposure {
-    fn default() -> Self {
-        Self(1.0)
-    }
+/// The exposure at which radiance is displayed \[stops\]: 2 to this power is the factor in front of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exposure {
+    stops: f64,
 }
 
 impl Exposure {
-    /// The power of two that shows the luminance `white` at white or less than one stop below: 1 where there is
+    /// The whole number of stops that shows the luminance `white` at white or less than one stop below: 0 where there is
     /// no light.
     #[must_use]
     pub fn of_white(white: f64) -> Self {
-        if white > 0.0 && white.is_finite() { Self((-white.log2().ceil()).exp2()) } else { Self::default() }
+        let is_light = white > 0.0 && white.is_finite();
+        // No negative zero.
+        Self::of_stops(if is_light { 0.0 - white.log2().ceil() } else { 0.0 })
+    }
+
+    /// An exposure that is given.
+    #[must_use]
+    pub fn of_stops(stops: f64) -> Self {
+        Self { stops }
+    }
+
+    /// The stops.
+    #[must_use]
+    pub fn stops(self) -> f64 {
+        self.stops
+    }
+
+    fn factor(self) -> f64 {
+        self.stops.exp2()
     }
 }
 
 impl std::fmt::Display for Exposure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "sRGB of {} times linear radiance, clamped to [0, 1]", self.0)
+        write!(f, "sRGB of {} times linear radiance, clamped to [0, 1]", self.factor())
     }
 }
 
@@ -39,7 +53,8 @@ fn srgb(linear: f64) -> f64 {
 }
 
 pub(super) fn encode(image: &Image, exposure: Exposure) -> Result<Vec<u8>, String> {
-    let byte = |value: &f32| (255.0 * srgb((exposure.0 * f64::from(*value)).clamp(0.0, 1.0))).round() as u8;
+    let factor = exposure.factor();
+    let byte = |value: &f32| (255.0 * srgb((factor * f64::from(*value)).clamp(0.0, 1.0))).round() as u8;
     let data: Vec<u8> = image.pixels.as_flattened().iter().map(byte).collect();
     write(image, &data, &exposure.to_string()).map_err(|error| error.to_string())
 }
@@ -67,7 +82,7 @@ mod tests {
     fn the_file_says_how_it_was_mapped() {
         let image = Image::new(2, 2, vec![[0.0; 3], [4.0, 2.0, -1.0], [4.0; 3], [4.0; 3]]);
         let exposure = Exposure::of_white(4.0);
-        assert_eq!(exposure, Exposure(0.25));
+        assert_eq!(exposure, Exposure::of_stops(-2.0));
         let bytes = encode(&image, exposure).unwrap();
         let mut reader = ::png::Decoder::new(bytes.as_slice()).read_info().unwrap();
         let mut data = vec![0; reader.output_buffer_size()];
@@ -81,7 +96,7 @@ mod tests {
 
     #[test]
     fn exposure_is_a_power_of_two_and_total() {
-        let of = |white: f64| Exposure::of_white(white).0;
+        let of = |white: f64| Exposure::of_white(white).factor();
         assert_eq!([0.0, -3.0, f64::NAN, f64::INFINITY].map(of), [1.0; 4]);
         assert_eq!([0.3, 0.6, 2.1, f64::from(f32::MIN_POSITIVE)].map(of), [2.0, 1.0, 0.25, 2_f64.powi(126)]);
         let grey = luminance([0.7; 3]);

@@ -8,11 +8,18 @@ use std::fmt;
 /// The value of a text.
 ///
 /// # Errors
-/// If the bytes are no JSON, or an object has a key twice: the first would be lost without a word.
+/// If the text is no JSON or more than that, or an object has a key twice: the first would be lost without a word.
 pub fn parse(text: &str) -> Result<Value, Failure> {
-    serde_json::from_str::<Strict>(text)
-        .map(|strict| strict.0)
-        .map_err(|error| Failure::refused(format!("not JSON: {error}")))
+    if text.trim().is_empty() {
+        return Err(Failure::refused("not JSON: it is empty"));
+    }
+    serde_json::from_str::<Strict>(text).map(|strict| strict.0).map_err(|error| {
+        let message = error.to_string();
+        Failure::refused(match message.strip_prefix("trailing characters") {
+            Some(place) => format!("there is more text after the end of the JSON,{place}"),
+            None => format!("not JSON: {message}"),
+        })
+    })
 }
 
 /// The text of bytes.
@@ -106,7 +113,8 @@ mod tests {
         assert!(
             refused("{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}}").contains("the key `c` stands twice at line 1")
         );
-        assert!(refused("{} {}").contains("trailing characters"));
+        assert!(refused("{} {}").contains("more text after the end of the JSON, at line 1 column 4"));
+        assert!(refused(" \n").contains("empty"));
         let volume = text(b" BDV\0\0\0\0\xe0\0\0\0".to_vec()).unwrap_err().to_string();
         assert!(volume.contains("OpenVDB") && volume.contains("\"vdb\""), "{volume}");
         assert!(text(vec![0xff, 0xfe]).is_err());

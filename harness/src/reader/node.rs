@@ -250,8 +250,13 @@ impl<'a> Object<'a> {
     /// # Errors
     /// If the key is missing.
     pub fn required(&self, key: &'static str) -> Result<Node<'a>, Failure> {
-        self.optional(key)
-            .ok_or_else(|| Failure::refused(format!("{}: this key is missing", join(&self.path, key))))
+        self.optional(key).ok_or_else(|| {
+            let taken = self.taken.borrow();
+            let others = self.map.keys().map(String::as_str).filter(|other| !taken.contains(other));
+            let slip = similar::nearest(key, others)
+                .map_or_else(String::new, |other| format!(", but there is {other} (did you mean {key}?)"));
+            Failure::refused(format!("{}: this key is missing{slip}", join(&self.path, key)))
+        })
     }
 
     /// Refuses every key that was not taken, but for `$schema`: with it editors check and complete a file.

@@ -20,21 +20,23 @@ const KNOWN_ELSEWHERE: [(&str, &str); 14] = [
 
 /// " (did you mean …?)" where one of `names` is as good as the word, or another name of it is known; else nothing.
 pub(crate) fn meant<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> String {
-    /// Of one slip of the keyboard in a short word, two in a long one.
-    const ALIKE: f64 = 0.75;
     let names: Vec<&str> = names.collect();
     let known = KNOWN_ELSEWHERE
         .iter()
         .find(|(name, here)| *name == word && names.iter().any(|name| here.split(' ').next() == Some(name)));
-    let nearest = || {
-        let likeness = |name: &&str| strsim::normalized_damerau_levenshtein(word, name);
-        let best = names.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
-        (likeness(&best) >= ALIKE).then_some(best)
-    };
     known
         .map(|&(_, here)| here)
-        .or_else(nearest)
+        .or_else(|| nearest(word, names.iter().copied()))
         .map_or_else(String::new, |name| format!(" (did you mean {name}?)"))
+}
+
+/// One of `names` that may be the word with a slip of the keyboard.
+pub(super) fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    /// Of one slip in a short word, two in a long one.
+    const ALIKE: f64 = 0.75;
+    let likeness = |name: &str| strsim::normalized_damerau_levenshtein(word, name);
+    let best = names.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+    (likeness(best) >= ALIKE).then_some(best)
 }
 
 #[cfg(test)]

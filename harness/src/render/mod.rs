@@ -13,34 +13,31 @@ mod passes;
 mod photons;
 mod pilot;
 mod pixel;
+mod points;
+mod rendering;
 mod statistics;
 mod tile;
 mod virtual_lights;
 mod warnings;
 mod work;
 
-use crate::budget::Budget;
 use crate::cli::RenderArguments;
-use crate::estimate::{folder_of, named, read};
 use crate::field::MediumLibrary;
-use crate::image::{Exposure, Image};
-use crate::interrupt::stop_gently;
-use crate::plan::{IntegratorPlan, ScenePlan, Spectra};
-use crate::spec::{SceneOverrides, SceneSpec};
+use crate::image::Exposure;
+use crate::input::Input;
+use crate::interrupt::{self, stop_gently};
+use crate::result::SweepPoint;
+use crate::spec::{Request, SceneOverrides};
 use crate::{DONE, Environment, Failure, INTERRUPTED};
-use output::Outputs;
+use output::Targets;
 pub(crate) use painting::{Painting, moments};
-use passes::{EarlyEnd, End, Painted, Rhythm, paint};
+use passes::{EarlyEnd, End};
+use points::{points, reference, within_budget};
+use rendering::Rendering;
 pub(crate) use statistics::Moments;
 use statistics::Statistics;
-
 use std::io::{Read, Write};
 use std::sync::OnceLock;
-
-/// The least time between two unfinished images in files \[s\].
-const FILES_EVERY: f64 = 2.0;
-/// The least time between two errors in the progress bar \[s\].
-const ERROR_EVERY: f64 = 0.1;
 
 pub(crate) fn run(
     arguments: &RenderArguments,
@@ -48,191 +45,64 @@ pub(crate) fn run(
     stdin: &mut dyn Read,
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
-    let mut outputs = Outputs::of(&arguments.out)?;
-    let name = named(&arguments.scene);
-    let in_scene = |failure: Failure| failure.within(&name);
-    let text = read(&arguments.scene, stdin).map_err(in_scene)?;
-    let overrides = SceneOverrides { samples_per_pixel: arguments.samples_per_pixel, seed: arguments.seed };
-    let spec = SceneSpec::parse_in(&text, folder_of(&arguments.scene), overrides).map_err(in_scene)?;
-    let media = MediumLibrary::default();
-    let plan = ScenePlan::of(&spec, &media).map_err(in_scene)?;
-    if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {
-        return Err(Failure::refused(
-            "--time-limit: photons come in replicas of the whole image, not in passes",
-        ));
+    let targets = Targets::of(&arguments.out)?;
+    if arguments.exposure.is_some() && !targets.has_tone_mapped() {
+        return Err(Failure::refused("--exposure: is for .png files, and no --out is one"));
     }
-    let length = if arguments.time_limit.is_some() { work::Length::Limited } else { work::Length::Whole };
-    let bounds = (Budget::of(arguments.budget), length);
+    let input = Input::read(&arguments.scene, stdin)?;
+    let overrides = SceneOverrides { samples_per_pixel: arguments.samples_per_pixel, seed: arguments.seed };
+    let request = Request::scenes_in(input.text(), input.folder(), overrides);
+    let request = request.map_err(|failure| input.within(failure))?;
+    let media = MediumLibrary::default();
+    let points = points(&request, arguments, &media, &input)?;
     let warning = environment
-        .on_threads(arguments.threads, || work::check(&spec, &plan, &media, bounds))
-        .map_err(in_scene)?;
+        .on_threads(arguments.threads, || within_budget(&points, arguments, &media))
+        .map_err(|failure| input.within(failure))?;
     // Nobody is left to tell if standard error is closed.
     if let Some(warning) = warning {
         let _ = writeln!(stderr, "warning: {warning}");
     }
-    let in_passes = arguments.time_limit.is_some() || plan.integrator.draws_in_batches();
-    // Before there is a file, and until all are in place: who interrupts gets what is done.
-    let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
-    let reference = reference(arguments, &plan)?;
-    let rendering = Rendering { name, spec, media, reference, plan, exposure: OnceLock::new(), environment };
-    outputs.prepare()?;
+    let reference = arguments.reference.as_deref().map(|path| reference(path, &points)).transpose()?;
 
-    let (painted, (image, statistics), exposure) = environment.on_threads(arguments.threads, || {
-        let painted = rendering.paint(early.as_ref(), &mut outputs)?;
-        let finished = rendering.finished(&painted)?;
-        Ok((painted, finished, rendering.exposure(&outputs)?))
-    })?;
-    for warning in &statistics.warnings {
-        let _ = writeln!(stderr, "warning: {warning}");
-    }
-    for path in outputs.tone_mapped() {
-        let _ = writeln!(stderr, "{}: {}", path.display(), exposure);
-    }
-    outputs.put(&image, exposure, &statistics)?;
-    Ok(if painted.end == End::Interrupted { INTERRUPTED } else { DONE })
-}
-
-/// The image to compare with, as large as the one that is rendered.
-fn reference(arguments: &RenderArguments, plan: &ScenePlan) -> Result<Option<(Image, String)>, Failure> {
-    let Some(path) = &arguments.reference else { return Ok(None) };
-    let in_reference = |failure: Failure| failure.within("--reference");
-    let image = Image::read(path).map_err(in_reference)?;
-    let [width, height] = plan.camera.resolution().map(|side| side as usize);
-    if (image.width(), image.height()) != (width, height) {
-        return Err(in_reference(Failure::refused(format!(
-            "{}: must have {width} x {height} pixels as the scene, found {} x {}",
-            path.display(),
-            image.width(),
-            image.height()
-        ))));
-    }
-    Ok(Some((image, path.display().to_string())))
-}
-
-/// What is to be rendered, and compared with what.
-struct Rendering<'a> {
-    name: String,
-    spec: SceneSpec,
-    media: MediumLibrary,
-    plan: ScenePlan,
-    reference: Option<(Image, String)>,
-    /// Of every picture, once it was asked for.
-    exposure: OnceLock<Exposure>,
-    environment: &'a Environment,
-}
-
-impl Rendering<'_> {
-    /// Draws the image; unfinished ones go to `outputs`.
-    fn paint(&self, early: Option<&EarlyEnd>, outputs: &mut Outputs) -> Result<Painted<'_>, Failure> {
-        let plan = &self.plan;
-        let [width, height] = plan.camera.resolution().map(u64::from);
-        let images = if matches!(plan.spectra, Spectra::Separate(_)) { 3 } else { 1 };
-        // Photons come on top of the background behind the medium.
-        let layers = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
-        let samples = width * height * u64::from(plan.samples_per_pixel) * images * layers;
-        let bar = self.environment.progress(samples, "rendering");
-        let (mut files, mut errors) = (Rhythm::new(FILES_EVERY), Rhythm::new(ERROR_EVERY));
-        let after_pass = |painting: &Painting<'_>, seconds: f64| {
-            errors.beat(seconds, || {
-                if !bar.is_hidden()
-                    && let Some(error) = self.error(painting)
-                {
-                    bar.set_message(error);
-                }
-                Ok(())
-            })?;
-            files.beat(seconds, || {
-                let (image, statistics) = self.result(&painting.moments(), seconds, None)?;
-                let exposure = self.exposure(outputs)?;
-                outputs.put(&image, exposure, &statistics)
-            })
+    let mut done: Vec<SweepPoint<Statistics>> = Vec::new();
+    for (i, point) in points.iter().enumerate() {
+        interrupt::check()?;
+        let mut outputs = match point.value {
+            Some(_) => targets.outputs_of(i, points.len()),
+            None => targets.outputs(),
         };
-        let painted = paint(plan, early, &|samples| bar.inc(samples), after_pass);
-        bar.finish_and_clear();
-        painted.map_err(|failure| self.in_scene(failure))
-    }
-
-    /// What the progress bar says of an unfinished image, if there is something to compare it with.
-    fn error(&self, painting: &Painting<'_>) -> Option<String> {
-        let (reference, _) = self.reference.as_ref()?;
-        let rmse = painting.moments().squared_error(reference).sqrt();
-        Some(format!("rendering, RMSE {rmse:.3e}"))
-    }
-
-    fn finished(&self, painted: &Painted<'_>) -> Result<(Image, Statistics), Failure> {
-        let Painted { painting, seconds, end } = painted;
-        self.result(&painting.moments(), *seconds, Some(*end)).map_err(|failure| self.in_scene(failure))
-    }
-
-    fn result(
-        &self,
-        moments: &Moments,
-        seconds: f64,
-        end: Option<End>,
-    ) -> Result<(Image, Statistics), Failure> {
-        let image = moments.image(&self.plan).map_err(Failure::refused)?;
-        let warnings = warnings::warnings(&self.spec, &self.plan, moments, end);
-        let reference = self.reference.as_ref().map(|(image, file)| (image, file.clone()));
-        let provenance = self.environment.provenance(self.plan.seed);
-        Ok((image, moments.statistics(&self.plan, reference, seconds, warnings, provenance)))
-    }
-
-    /// The exposure of every picture that is put, also unfinished; where none is tone-mapped it is not asked for.
-    fn exposure(&self, outputs: &Outputs) -> Result<Exposure, Failure> {
-        if let Some(exposure) = self.exposure.get() {
-            return Ok(*exposure);
-        }
-        let exposure = match outputs.tone_mapped().next() {
-            Some(_) => pilot::exposure(&self.spec, &self.media)
-                .map_err(|failure| self.in_scene(failure.within("exposure")))?,
-            None => Exposure::default(),
+        let in_passes = arguments.time_limit.is_some() || point.plan.integrator.draws_in_batches();
+        // Before there is a file, and until all are in place: who interrupts gets what is done.
+        let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
+        let exposure = arguments.exposure.map(|stops| (Exposure::of_stops(stops), "--exposure"));
+        let exposure = exposure.map_or_else(OnceLock::new, OnceLock::from);
+        let rendering = Rendering {
+            input: &input,
+            media: &media,
+            point,
+            reference: reference.as_ref(),
+            exposure,
+            before: &done,
+            environment,
         };
-        Ok(*self.exposure.get_or_init(|| exposure))
-    }
-
-    /// A refusal names the scene; a file that cannot be written names itself.
-    fn in_scene(&self, failure: Failure) -> Failure {
-        match failure {
-            Failure::Refused(_) => failure.within(&self.name),
-            Failure::NotWritten(_) | Failure::Interrupted => failure,
+        outputs.prepare()?;
+        let (end, image, statistics) =
+            environment.on_threads(arguments.threads, || rendering.finished(early.as_ref(), &mut outputs))?;
+        let place = point.value.map(|value| format!("sweep value {value}: ")).unwrap_or_default();
+        for warning in &statistics.warnings {
+            let _ = writeln!(stderr, "warning: {place}{warning}");
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Host;
-
-    #[test]
-    fn the_bar_tells_the_error_of_what_is_drawn() {
-        let scene = include_str!("../../scenes/eq21-environment.json");
-        let mut spec = SceneSpec::parse(scene, SceneOverrides::default()).unwrap();
-        spec.lights.clear();
-        let mut plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
-        plan.samples_per_pixel = 2;
-        let [width, height] = plan.camera.resolution().map(|side| side as usize);
-        let environment = Environment::new(&[], Host::default());
-        let rendering = |value: f32| {
-            let reference = Image::new(width, height, vec![[value; 3]; width * height]);
-            let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
-            let reference = Some((reference, "reference.pfm".to_owned()));
-            let (spec, media, exposure) = (spec.clone(), MediumLibrary::default(), OnceLock::new());
-            Rendering {
-                name: String::new(),
-                spec,
-                media,
-                plan,
-                reference,
-                exposure,
-                environment: &environment,
+        let exposure = rendering.exposure(&outputs)?;
+        if !environment.is_quiet() {
+            for path in outputs.tone_mapped() {
+                let _ = writeln!(stderr, "{}: {}", path.display(), exposure.0);
             }
-        };
-        let mut painting = Painting::new(&plan);
-        painting.add_pass(&|_| ()).unwrap();
-        // It is dark, the reference is not.
-        assert_eq!(rendering(0.25).error(&painting).unwrap(), "rendering, RMSE 2.500e-1");
-        assert_eq!(rendering(0.0).error(&painting).unwrap(), "rendering, RMSE 0.000e0");
-        assert_eq!(Rendering { reference: None, ..rendering(0.0) }.error(&painting), None);
+        }
+        rendering.put(&mut outputs, &image, &statistics)?;
+        if end == End::Interrupted {
+            return Ok(INTERRUPTED);
+        }
+        done.extend(point.value.map(|value| SweepPoint { value: value.clone(), result: statistics }));
     }
+    Ok(DONE)
 }

@@ -1,9 +1,10 @@
 //! Files that appear whole or not at all.
 
-use super::statistics::Statistics;
-use crate::Failure;
 use crate::image::{Exposure, Format, Image};
 use crate::interrupt::{Guard, shield};
+use crate::{Failure, partial};
+use serde::Serialize;
+use std::ffi::OsString;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,40 @@ impl Kind {
     }
 }
 
-/// All files that a run writes, once or again and again.
+/// The files that a command names.
+#[derive(Debug)]
+pub(super) struct Targets(Vec<(PathBuf, Kind)>);
+
+impl Targets {
+    /// Files of these paths; nothing is touched yet.
+    ///
+    /// # Errors
+    /// If an extension says nothing.
+    pub(super) fn of(paths: &[PathBuf]) -> Result<Self, Failure> {
+        paths.iter().map(|path| Ok((path.clone(), Kind::of(path)?))).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Whether one of them is tone-mapped.
+    pub(super) fn has_tone_mapped(&self) -> bool {
+        self.0.iter().any(|(_, kind)| *kind == Kind::Image(Format::Png))
+    }
+
+    /// The files of one image.
+    pub(super) fn outputs(&self) -> Outputs {
+        Outputs { targets: self.0.clone(), prepared: Vec::new() }
+    }
+
+    /// The files of one point of a sweep of so many: images with its number in their names, and the statistics of all points.
+    pub(super) fn outputs_of(&self, point: usize, points: usize) -> Outputs {
+        let mut outputs = self.outputs();
+        for (path, _) in outputs.targets.iter_mut().filter(|(_, kind)| *kind != Kind::Statistics) {
+            *path = numbered(path, point, points);
+        }
+        outputs
+    }
+}
+
+/// All files that an image is written into, once or again and again.
 #[derive(Debug)]
 pub(super) struct Outputs {
     targets: Vec<(PathBuf, Kind)>,
@@ -42,15 +76,6 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Files of these paths; nothing is touched yet.
-    ///
-    /// # Errors
-    /// If an extension says nothing.
-    pub(super) fn of(paths: &[PathBuf]) -> Result<Self, Failure> {
-        let targets = paths.iter().map(|path| Ok((path.clone(), Kind::of(path)?)));
-        Ok(Self { targets: targets.collect::<Result<_, Failure>>()?, prepared: Vec::new() })
-    }
-
     /// Prepares to write: a long run should not end with the news that nobody can write there.
     ///
     /// # Errors
@@ -69,7 +94,7 @@ impl Outputs {
         &mut self,
         image: &Image,
         exposure: Exposure,
-        statistics: &Statistics,
+        statistics: &impl Serialize,
     ) -> Result<(), Failure> {
         if self.prepared.is_empty() {
             self.prepare()?;
@@ -90,6 +115,15 @@ impl Outputs {
         let is_png = |kind: &Kind| *kind == Kind::Image(Format::Png);
         self.targets.iter().filter(move |(_, kind)| is_png(kind)).map(|(path, _)| path.as_path())
     }
+}
+
+/// `NAME-0.png` for the first point of `NAME.png`; of more than ten points `NAME-00.png`, so that names are in order.
+fn numbered(path: &Path, point: usize, points: usize) -> PathBuf {
+    let width = points.saturating_sub(1).to_string().len();
+    let mut name = path.file_stem().map(OsString::from).unwrap_or_default();
+    name.push(format!("-{point:0width$}."));
+    name.push(path.extension().unwrap_or_default());
+    path.with_file_name(name)
 }
 
 /// A temporary file beside the one that it will become.
@@ -117,19 +151,13 @@ impl Prepared {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
-        let mut prefix = std::ffi::OsString::from(".");
-        prefix.push(name);
-        prefix.push(".partial-");
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix);
-        // The rights of an ordinary file: it will be renamed into one.
-        #[cfg(unix)]
-        let permissions = <fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666);
-        #[cfg(unix)]
-        builder.permissions(permissions);
+        for (path, _lock) in partial::abandoned(parent, name, "partial") {
+            // One that stays does no harm.
+            let _ = fs::remove_file(path);
+        }
         // An interrupt comes before this or finds it registered.
         let mut shield = shield();
-        let file = builder.tempfile_in(parent).map_err(failed)?;
+        let file = partial::file(parent, name).map_err(failed)?;
         let guard = shield.remove_on_interrupt(file.path());
         Ok(Self { given: path.to_owned(), target, file, _guard: guard })
     }
@@ -174,6 +202,14 @@ mod tests {
             (names(root.path()), fs::read(&path).unwrap()),
             (vec!["image.pfm".to_owned()], b"new".to_vec())
         );
+    }
+
+    #[test]
+    fn points_of_a_sweep_are_numbered() {
+        let of = |name: &str, point, points| numbered(Path::new(name), point, points);
+        assert_eq!(of("a/b.c.png", 0, 1), Path::new("a/b.c-0.png"));
+        assert_eq!(of("b.EXR", 9, 10), Path::new("b-9.EXR"));
+        assert_eq!(of("b.pfm", 9, 11), Path::new("b-09.pfm"));
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub(super) struct Statistics {
     pub reference: Option<ReferenceError>,
     pub cost: Cost,
     pub efficiency: Efficiency,
+    /// Null without a tone-mapped file.
+    pub exposure: Option<ShownAt>,
     /// Null for an integrator without any.
     pub virtual_point_lights: Option<VirtualLights>,
     /// How mean squared error and efficiency are meant.
@@ -68,6 +70,15 @@ pub(super) struct Cost {
     pub seconds: f64,
     /// Over all threads.
     pub cpu_seconds: f64,
+}
+
+/// The exposure of tone-mapped files.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct ShownAt {
+    /// 2 to this power is the factor in front of linear radiance.
+    pub stops: f64,
+    /// `--exposure`, or the pilot image.
+    pub from: &'static str,
 }
 
 /// Virtual point lights, and what compensates for bounding them.
@@ -188,7 +199,7 @@ impl Moments {
         reference: Option<(&Image, String)>,
         seconds: f64,
         warnings: Vec<String>,
-        provenance: Provenance,
+        (exposure, provenance): (Option<ShownAt>, Provenance),
     ) -> Statistics {
         let [width, height] = plan.camera.resolution();
         let samples = f64::from(self.samples);
@@ -236,6 +247,7 @@ impl Moments {
                 per_second: efficiency(seconds),
                 per_lookup: efficiency(lookups as f64),
             },
+            exposure,
             virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
             method: format!(
                 "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}",

@@ -8,7 +8,7 @@
 use super::pilot::reduced;
 use super::tile::Tile;
 use super::{Moments, moments};
-use crate::budget::{Budget, patience, seconds_per_lookup};
+use crate::budget::{Budget, seconds_per_lookup};
 use crate::estimator::{EstimatorSpec, Expected, RayKnown};
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::plan::{IntegratorPlan, ScenePlan, Spectra};
@@ -45,7 +45,16 @@ pub(super) enum Length {
     Limited,
 }
 
-/// Whether an image may be drawn within a budget; a warning where that takes more than an hour.
+/// Work that is to be expected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Work {
+    /// Look-ups.
+    pub lookups: f64,
+    /// Seconds of each.
+    pub seconds: f64,
+}
+
+/// The work of an image that may be drawn within a budget.
 ///
 /// # Errors
 /// If more look-ups are to be expected, or an interrupt asked to stop.
@@ -54,7 +63,7 @@ pub(super) fn check(
     plan: &ScenePlan,
     library: &MediumLibrary,
     (budget, length): (Budget, Length),
-) -> Result<Option<String>, Failure> {
+) -> Result<Work, Failure> {
     let [columns, rows] = plan.camera.resolution();
     let samples = if length == Length::Limited { 1 } else { spec.samples_per_pixel };
     let pixels = f64::from(columns) * f64::from(rows);
@@ -95,8 +104,7 @@ pub(super) fn check(
     let each = lookups / paths;
     let key = if each > MOST_ORDINARY { key } else { "samples_per_pixel" };
     budget.check(key, lookups.max(paths), &because(each))?;
-    let seconds = chords.profile.as_ref().map_or(0.0, seconds_per_lookup);
-    Ok(if length == Length::Whole { patience(lookups, seconds) } else { None })
+    Ok(Work { lookups: lookups.max(paths), seconds: chords.profile.as_ref().map_or(0.0, seconds_per_lookup) })
 }
 
 /// Whether so many of something, of so many bytes each, may be kept in memory.

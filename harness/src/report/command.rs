@@ -37,6 +37,11 @@ fn report(
         )));
     }
     let folder = arguments.out.clone().unwrap_or_else(|| PathBuf::from("reports").join(kind.name));
+    if arguments.out.is_none() && !environment.is_quiet() {
+        let place = std::path::absolute(&folder).unwrap_or_else(|_| folder.clone());
+        // A person who does not see this finds it in the working directory.
+        let _ = writeln!(stderr, "the report {} goes to {}", kind.name, place.display());
+    }
     let (seconds, sound) = match kind.study {
         Study::Standard => {
             let report = measured_and_written(&folder, arguments, environment, || {
@@ -58,8 +63,10 @@ fn report(
             (document.seconds, document.unsound.is_empty())
         }
     };
-    // A person who does not see this has the report all the same.
-    let _ = writeln!(stderr, "{}: written in {seconds:.1} s", folder.join("index.html").display());
+    if !environment.is_quiet() {
+        // A person who does not see this has the report all the same.
+        let _ = writeln!(stderr, "{}: written in {seconds:.1} s", folder.join("index.html").display());
+    }
     Ok(if sound { DONE } else { UNSOUND })
 }
 

@@ -3,8 +3,8 @@
 use super::document::{Document, Options, Section};
 use crate::Environment;
 use crate::field::MediumLibrary;
+use crate::progress::Progress;
 use fairflight_sources::named_seed;
-use indicatif::ProgressBar;
 use std::fmt::Display;
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ pub(crate) struct Run<'a> {
     pub(super) options: &'a Options,
     pub(super) media: MediumLibrary,
     environment: &'a Environment,
-    progress: ProgressBar,
+    progress: Progress,
     clock: Instant,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Run<'a> {
 
     /// The document of this run, which ends here, without contents.
     pub(super) fn document(&self, title: &str) -> Document {
-        self.progress.finish_and_clear();
+        self.progress.finish();
         Document {
             provenance: self.environment.provenance(self.options.seed),
             name: self.name.to_owned(),

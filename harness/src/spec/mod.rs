@@ -6,8 +6,11 @@
 
 mod experiment;
 mod scene;
+mod sweep;
 
-pub use experiment::{Experiment, Overrides, Request, Sweep};
+use crate::Failure;
+use crate::reader::Object;
+pub use experiment::{Experiment, Overrides};
 pub use scene::{
     ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec,
     IntegratorKind, IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, Particles, PathTracerSpec,
@@ -15,3 +18,24 @@ pub use scene::{
     ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, TracerSpec, TransmittanceSpec,
     TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };
+pub use sweep::{Request, Sweep};
+
+/// Files that are something else, by a key that only they have.
+const FILES: [(&str, &str); 4] = [
+    ("camera", "a scene, no {}: `harness render` takes it"),
+    ("profile", "an experiment, no {}: `harness estimate` takes it"),
+    ("provenance", "a result, no {}: what it was made from stands in its provenance"),
+    ("kind", "a part such as a medium, no {}: `harness advise` takes a medium"),
+];
+
+/// Refuses a file that is something else than its command takes.
+///
+/// # Errors
+/// If it lacks `key`, and has one that tells what it is.
+pub(crate) fn refuse_other(key: &str, wanted: &str, root: &Object<'_>) -> Result<(), Failure> {
+    let other = FILES.iter().find(|(other, _)| root.has(other)).filter(|_| !root.has(key));
+    match other {
+        Some((_, told)) => Err(Failure::refused(format!("this is {}", told.replace("{}", wanted)))),
+        None => Ok(()),
+    }
+}

@@ -13,9 +13,18 @@ pub(crate) struct Outcome {
 
 /// Runs `harness ARGUMENTS` with this standard input.
 pub(crate) fn harness(arguments: &[&str], stdin: &str) -> Outcome {
+    harness_on(Host::default(), arguments, stdin)
+}
+
+/// The same on a terminal, but without progress.
+pub(crate) fn on_a_terminal(arguments: &[&str], stdin: &str) -> Outcome {
+    harness_on(Host { tables: true, ..Host::default() }, arguments, stdin)
+}
+
+fn harness_on(host: Host, arguments: &[&str], stdin: &str) -> Outcome {
     let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
     let words = std::iter::once(&"harness").chain(arguments).copied();
-    let code = run(words, &mut stdin.as_bytes(), &mut stdout, &mut stderr, Host::default());
+    let code = run(words, &mut stdin.as_bytes(), &mut stdout, &mut stderr, host);
     let text = |bytes| String::from_utf8(bytes).expect("the program writes UTF-8");
     Outcome { code, stdout: text(stdout), stderr: text(stderr) }
 }

@@ -111,9 +111,17 @@ fn an_infinite_variance_is_a_word() {
 #[test]
 fn a_ray_that_misses_sees_everything() {
     let miss = SEED_RAY.replace("[0, 0, 0]", "[50, 0, 0]");
-    let result = estimate(&spec(&miss, r#"{ "kind": "woodcock", "majorant": 1 }"#, 100));
+    let woodcock = r#"{ "kind": "woodcock", "majorant": 1 }"#;
+    let outcome = harness(&["estimate", "-"], &spec(&miss, woodcock, 100));
+    let result: Value = serde_json::from_str(&outcome.stdout).unwrap();
     assert_eq!(number(&result, "/reference/transmittance"), 1.0);
     assert_eq!(number(&result, "/estimate/mean"), 1.0);
+    // Not silently: it is hardly what was meant.
+    let method = |result: &Value| result["reference"]["method"].as_str().unwrap().to_owned();
+    assert!(method(&result).ends_with("the ray misses the medium: T = 1"), "{}", method(&result));
+    assert_eq!(outcome.stderr, "warning: profile: the ray misses the medium: T = 1\n");
+    let hit = harness(&["estimate", "-"], &spec(SEED_RAY, woodcock, 100));
+    assert!(hit.stderr.is_empty() && !hit.stdout.contains("misses"), "{}", hit.stderr);
 }
 
 #[test]

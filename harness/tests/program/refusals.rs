@@ -370,27 +370,3 @@ fn a_slip_is_told_what_was_meant() {
         assert!(outcome.stderr.contains(meant), "{}", outcome.stderr);
     }
 }
-
-#[test]
-fn what_is_no_experiment_is_named_as_what_it_is() {
-    let scene = include_str!("../../scenes/eq21-environment.json");
-    let experiment = r#"{ "profile": {}, "estimator": {}, "samples": 1, "seed": 1 }"#;
-    let volume = fixture("cloud.vdb");
-    let twice = r#"{ "samples": 1, "samples": 2 }"#;
-    for (arguments, input, words) in [
-        (vec!["estimate", "-"], scene, "this is a scene, no experiment: `harness render` takes it"),
-        (
-            vec!["render", "-", "--out", "x.png"],
-            experiment,
-            "this is an experiment, no scene: `harness estimate`",
-        ),
-        (vec!["estimate", &volume], "", "an OpenVDB file, not JSON"),
-        (vec!["estimate", "-"], twice, "the key `samples` stands twice"),
-        (vec!["estimate", "-"], "{} trailing", "trailing characters"),
-    ] {
-        let outcome = harness(&arguments, input);
-        assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""), "{arguments:?}");
-        assert!(outcome.stderr.contains(words), "{}", outcome.stderr);
-        assert_eq!(outcome.stderr.lines().count(), 1, "{}", outcome.stderr);
-    }
-}

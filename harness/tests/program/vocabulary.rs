@@ -130,6 +130,16 @@ fn the_schema_refuses_what_the_reader_refuses() {
 }
 
 #[test]
+fn a_scene_may_be_swept() {
+    let mut scene: Value = serde_json::from_str(include_str!("../../scenes/perlin.json")).unwrap();
+    scene["sweep"] = json!({ "path": "integrator.sigma_samp", "values": [0.4, 0.8] });
+    let mut broken = scene.clone();
+    broken["sweep"]["paths"] = json!("");
+    let verdicts = judge(&[(String::new(), scene), (String::new(), broken)]);
+    assert!(verdicts[0].1.is_ok() && verdicts[1].1.is_err(), "{verdicts:?}");
+}
+
+#[test]
 fn a_schema_may_be_named_in_the_file() {
     let mut spec: Value = json_in("docs/examples").swap_remove(0).1;
     spec["$schema"] = json!("https://example.org/schema.json");

@@ -24,11 +24,11 @@ mod walk;
 pub use options::Options;
 
 use crate::field::MediumLibrary;
+use crate::progress::Progress;
 use crate::report::result::{MediumReport, Report};
 use crate::{Environment, Failure};
 use effort::Effort;
 use fairflight_sources::named_seed;
-use indicatif::ProgressBar;
 use laws::SharedLaws;
 use std::fmt::Display;
 use std::time::Instant;
@@ -57,7 +57,7 @@ pub fn standard(options: &Options, environment: &Environment) -> Result<Report, 
         pictures.extend(images::studies(&run, subject)?);
     }
     let claims = claims::ledger(&run, &subjects, &media, &pictures)?;
-    bar.finish_and_clear();
+    bar.finish();
     Ok(Report {
         provenance: environment.provenance(options.seed),
         quick: options.quick,
@@ -91,7 +91,7 @@ fn medium(run: &Run<'_>, subject: &Subject) -> Result<MediumReport, Failure> {
 struct Run<'a> {
     seed: u64,
     effort: Effort,
-    bar: &'a ProgressBar,
+    bar: &'a Progress,
 }
 
 impl Run<'_> {
@@ -107,7 +107,7 @@ impl Run<'_> {
     /// A quick run without a bar.
     #[cfg(test)]
     fn for_tests() -> Run<'static> {
-        static HIDDEN: std::sync::LazyLock<ProgressBar> = std::sync::LazyLock::new(ProgressBar::hidden);
+        static HIDDEN: std::sync::LazyLock<Progress> = std::sync::LazyLock::new(Progress::hidden);
         Run { seed: 1, effort: Effort::of(true), bar: &HIDDEN }
     }
 }

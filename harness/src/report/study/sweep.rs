@@ -203,7 +203,7 @@ mod tests {
         let subject = subject::analytic(&MediumLibrary::default()).unwrap();
         let laws = SharedLaws::of(&subject);
         let run = Run::for_tests();
-        let provenance = Provenance { seed: 3, revision: String::new(), command: String::new() };
+        let provenance = Provenance { seed: 3, ..Provenance::default() };
         for series in
             [Series::Woodcock, Series::DoubleParticleExplorers, Series::Adaptive, Series::LineIntegral]
         {

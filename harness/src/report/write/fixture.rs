@@ -11,6 +11,7 @@ pub(super) fn report() -> Report {
             seed: 1,
             revision: "0".to_owned(),
             command: "harness report --quick".to_owned(),
+            spec: None,
         },
         quick: true,
         seconds: 1.5,

@@ -3,10 +3,10 @@
 //! Everything is written into a folder beside the final one, which is then renamed. An older report makes way; anything else is
 //! never touched. An interrupted run removes what it has begun.
 
-use crate::Failure;
 use crate::interrupt::{Guard, shield};
-use std::ffi::OsString;
-use std::fs;
+use crate::{Failure, partial};
+use std::ffi::OsStr;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -18,6 +18,8 @@ pub(super) const RESULTS: &str = "results.json";
 pub struct Prepared {
     folder: PathBuf,
     partial: TempDir,
+    /// Keeps other runs from it.
+    _lock: Option<File>,
     /// The parents that did not exist before, innermost first.
     created: Vec<PathBuf>,
     /// Of the temporary folder and of the parents.
@@ -34,21 +36,22 @@ impl Prepared {
         let Some(name) = target.file_name() else {
             return Err(Failure::not_written(folder, "the path has no name to give to a report"));
         };
-        refuse_foreign(&target)?;
         let parent = match target.parent() {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
+        clear_abandoned(&target, parent, name);
+        refuse_foreign(&target)?;
         let missing = parent.ancestors().filter(|path| *path != Path::new("") && !path.exists());
         let mut created = Created(missing.map(Path::to_owned).collect());
         // An interrupt comes before all of this or finds it registered.
         let mut shield = shield();
         fs::create_dir_all(parent).map_err(failed)?;
-        let partial = beside(parent, &hidden(name, "partial")).map_err(failed)?;
+        let (partial, _lock) = partial::folder(parent, name, "partial").map_err(failed)?;
         let created = std::mem::take(&mut created.0);
         let mut guards = vec![shield.remove_on_interrupt(partial.path())];
         guards.extend(created.iter().map(|folder| shield.remove_on_interrupt_if_empty(folder)));
-        Ok(Self { folder: target, partial, created, guards, committed: false })
+        Ok(Self { folder: target, partial, _lock, created, guards, committed: false })
     }
 
     /// Where to write.
@@ -67,7 +70,7 @@ impl Prepared {
             let parent = self.partial.path().parent().unwrap_or(Path::new("."));
             let name = self.folder.file_name().unwrap_or_default();
             // The older report is removed with this folder, after the new one is in place.
-            let old = beside(parent, &hidden(name, "old")).map_err(failed)?;
+            let (old, _lock) = partial::folder(parent, name, "old").map_err(failed)?;
             let aside = old.path().join("report");
             fs::rename(&self.folder, &aside).map_err(failed)?;
             if let Err(error) = fs::rename(self.partial.path(), &self.folder) {
@@ -112,23 +115,20 @@ impl Drop for Created {
     }
 }
 
-/// `.name.what-`
-fn hidden(name: &std::ffi::OsStr, what: &str) -> OsString {
-    let mut prefix = OsString::from(".");
-    prefix.push(name);
-    prefix.push(format!(".{what}-"));
-    prefix
-}
-
-/// A new temporary folder, with the access rights of an ordinary one: it will be renamed into one.
-fn beside(parent: &Path, prefix: &std::ffi::OsStr) -> std::io::Result<TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(prefix);
-    #[cfg(unix)]
-    let permissions = <fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o777);
-    #[cfg(unix)]
-    builder.permissions(permissions);
-    builder.tempdir_in(parent)
+/// Removes what killed runs left beside `target`. One that was killed between its two renames left the older report aside: that one is put
+/// back.
+fn clear_abandoned(target: &Path, parent: &Path, name: &OsStr) {
+    for (old, _lock) in partial::abandoned(parent, name, "old") {
+        let aside = old.join("report");
+        if aside.exists() && fs::symlink_metadata(target).is_err() && fs::rename(aside, target).is_err() {
+            // The older report must outlive this run where it is.
+            continue;
+        }
+        let _ = fs::remove_dir_all(old);
+    }
+    for (path, _lock) in partial::abandoned(parent, name, "partial") {
+        let _ = fs::remove_dir_all(path);
+    }
 }
 
 /// Refuses to replace what is neither empty nor a report.
@@ -211,6 +211,23 @@ mod tests {
             assert_eq!(names(&folder), [RESULTS, round]);
             assert_eq!(names(root.path()), ["standard"]);
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_a_killed_run_left_is_removed_and_what_it_put_aside_is_put_back() {
+        let root = tempfile::tempdir().unwrap();
+        let (target, name) = (root.path().join("standard"), OsStr::new("standard"));
+        let abandon = |what: &str| partial::folder(root.path(), name, what).unwrap().0.keep();
+        fs::create_dir(abandon("old").join("report")).unwrap();
+        fs::write(abandon("partial").join("index.html"), "half").unwrap();
+        let prepared = Prepared::new(&target).unwrap();
+        assert!(target.is_dir());
+        assert_eq!(names(root.path()).len(), 2, "the older report and what is being written");
+        // A run beside this one takes nothing from it.
+        drop(Prepared::new(&target).unwrap());
+        prepared.put().unwrap();
+        assert_eq!(names(root.path()), ["standard"]);
     }
 
     #[cfg(unix)]

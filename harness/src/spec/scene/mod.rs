@@ -19,9 +19,11 @@ pub use phase::{PhaseKind, PhaseSpec};
 pub use surface::{MaterialSpec, RectangleSpec, ShapeKind, ShapeSpec, SphereSpec, SurfaceSpec};
 pub use volume::VolumeSpec;
 
+use super::{Request, refuse_other};
 use crate::Failure;
 use crate::reader::{Node, json};
 use fairflight_scene::Camera;
+use serde_json::Value;
 use std::path::Path;
 
 /// A scene as given.
@@ -52,6 +54,21 @@ pub struct SceneOverrides {
     pub seed: Option<u64>,
 }
 
+/// The parts of a scene in which a key may be swept.
+const PARTS: [&str; 5] = ["camera", "medium", "lights", "surfaces", "integrator"];
+
+impl Request<SceneSpec> {
+    /// Reads a whole scene or a sweep of them; paths of files in it are relative to the folder `base`.
+    ///
+    /// # Errors
+    /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
+    pub fn scenes_in(text: &str, base: &Path, overrides: SceneOverrides) -> Result<Self, Failure> {
+        let spec = json::parse(text)?;
+        refuse_other("camera", "scene", &Node::root(&spec).object()?)?;
+        Self::of(&spec, &PARTS, |point| SceneSpec::read(point, base, overrides))
+    }
+}
+
 impl SceneSpec {
     /// Reads a whole scene; paths of files in it are relative to the working directory.
     ///
@@ -64,13 +81,16 @@ impl SceneSpec {
     /// Reads a whole scene; paths of files in it are relative to the folder `base`.
     ///
     /// # Errors
-    /// If it is not JSON, or a key is missing, unknown or of the wrong kind.
+    /// If it is not JSON, a key is missing, unknown or of the wrong kind, or it is a sweep.
     pub fn parse_in(text: &str, base: &Path, overrides: SceneOverrides) -> Result<Self, Failure> {
-        let spec = json::parse(text)?;
-        let root = Node::root_in(&spec, base).object()?;
-        if root.has("profile") && !root.has("camera") {
-            return Err(Failure::refused("this is an experiment, no scene: `harness estimate` takes it"));
+        match Request::scenes_in(text, base, overrides)? {
+            Request::Single(scene) => Ok(*scene),
+            Request::Sweep(_) => Err(Failure::refused("sweep: one scene is needed here, without this key")),
         }
+    }
+
+    fn read(spec: &Value, base: &Path, overrides: SceneOverrides) -> Result<Self, Failure> {
+        let root = Node::root_in(spec, base).object()?;
         let allow_gain = root.optional("allow_gain").map_or(Ok(false), |node| node.boolean())?;
         let camera = camera::read(&root.required("camera")?)?;
         let medium = root.optional("medium").map(|node| VolumeSpec::read(&node, allow_gain)).transpose()?;
@@ -88,6 +108,7 @@ impl SceneSpec {
         let most = u64::from(u32::MAX);
         let samples = or_override("samples_per_pixel", 1, most, overrides.samples_per_pixel.map(u64::from))?;
         let seed = or_override("seed", 0, u64::MAX, overrides.seed)?;
+        let _ = root.optional("sweep");
         root.finish_root()?;
         Ok(Self { camera, medium, lights, surfaces, integrator, samples_per_pixel: samples as u32, seed })
     }

@@ -19,6 +19,7 @@ pub(crate) fn document() -> Document {
             seed: 1,
             revision: "0".to_owned(),
             command: "harness report made-up".to_owned(),
+            spec: None,
         },
         name: "made-up".to_owned(),
         title: "A made-up study of <nothing>".to_owned(),
