@@ -213,7 +213,7 @@ fn blocks_of_bounds_are_counted() {
 #[test]
 fn bounds_are_short() {
     const MOST_LINES: usize = 4;
-    const TOTAL: usize = 111;
+    const TOTAL: usize = 126;
     let mut total = 0;
     for folder in ["crates", "harness", "tests"] {
         for (path, text) in sources(folder) {

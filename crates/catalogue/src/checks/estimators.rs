@@ -3,7 +3,11 @@
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Constant, FieldError, PiecewiseConstant, PiecewiseLinear, Vacuum};
+use fairflight_laws::scores::Ranged;
+use fairflight_media::{
+    Breakpoints, Constant, FieldError, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
+    PiecewiseLinear, Vacuum,
+};
 use fairflight_transmittance::{Explorers, Offset, RayMarching, Tracking};
 use std::sync::Arc;
 
@@ -17,10 +21,7 @@ const SPLIT: u64 = 800_000;
 type Tracker<C, R> = Tracking<DoubleParticle, C, R>;
 
 /// The double particle model; the albedo does not enter transmittance.
-fn double_particle<C: fairflight_media::OpticalThickness, R: fairflight_media::InvertOpticalThickness>(
-    control: C,
-    sampling: R,
-) -> Tracker<C, R> {
+fn double_particle<C: OpticalThickness, R: InvertOpticalThickness>(control: C, sampling: R) -> Tracker<C, R> {
     Tracking::new(DoubleParticle { albedo: Albedo::default() }, control, sampling)
 }
 
@@ -97,10 +98,8 @@ fn tracking<F, C, R>(
 ) -> Check
 where
     F: SpecimenField,
-    C: fairflight_media::OpticalThickness + fairflight_media::Breakpoints + fairflight_laws::scores::Ranged,
-    R: fairflight_media::InvertOpticalThickness
-        + fairflight_media::Breakpoints
-        + fairflight_laws::scores::Ranged,
+    C: OpticalThickness + Breakpoints + Ranged,
+    R: InvertOpticalThickness + Breakpoints + Ranged,
 {
     add(specimen, name, Law::Transmittance, SURVIVING, move |specimen, run| match build(&specimen.field) {
         Ok(tracking) => specimen.tracking(&tracking, run),
