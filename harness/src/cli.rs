@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Completions(CompletionsArguments),
     /// Write manual pages into a folder: harness.1, harness-estimate.1, and so on
     Man(ManArguments),
+    /// Print the licences of the fonts and crates that the program contains
+    Licences,
 }
 
 /// Arguments of `completions`.

@@ -73,6 +73,7 @@ pub fn run(
         Some(Command::Schema(arguments)) => vocabulary::print_schema(arguments, stdout),
         Some(Command::Completions(arguments)) => shell::completions(arguments, stdout),
         Some(Command::Man(arguments)) => shell::manual(&arguments),
+        Some(Command::Licences) => shell::licences(stdout),
         Some(Command::Report(arguments)) => report::command::run(&arguments, &environment, stderr),
         None => report::command::run(&ReportArguments::default(), &environment, stderr),
     };

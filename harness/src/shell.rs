@@ -1,4 +1,4 @@
-//! What a shell and a manual reader want of the command line: completions and man pages.
+//! Texts that belong to the program: completions for shells, man pages, licences of third parties.
 
 use crate::cli::{Cli, CompletionsArguments, ManArguments};
 use crate::{DONE, Failure, print};
@@ -19,5 +19,11 @@ pub(crate) fn manual(arguments: &ManArguments) -> Result<i32, Failure> {
     let folder = &arguments.folder;
     let written = fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
     written.map_err(|error| Failure::not_written(folder, error))?;
+    Ok(DONE)
+}
+
+/// `harness licences`.
+pub(crate) fn licences(stdout: &mut dyn Write) -> Result<i32, Failure> {
+    print(stdout, include_str!("../NOTICES.md"))?;
     Ok(DONE)
 }

@@ -308,3 +308,30 @@ fn seeds_of_reports_are_made_from_names() {
         }
     }
 }
+
+#[test]
+fn library_crates_can_be_published() {
+    let workspace = fs::read_to_string(repository().join("Cargo.toml")).unwrap();
+    let paths = workspace.lines().filter(|line| line.starts_with("fairflight-"));
+    for line in paths.filter(|line| line.contains("path = \"crates/")) {
+        assert!(
+            line.contains("version = "),
+            "a published crate names versions of those that it builds on: {line}"
+        );
+    }
+    let manifests = files("crates").into_iter().filter(|path| path.ends_with("Cargo.toml"));
+    for manifest in manifests {
+        let text = fs::read_to_string(&manifest).unwrap();
+        assert!(!text.contains("publish"), "{}", manifest.display());
+        for key in ["description = ", "license.workspace", "keywords.workspace", "categories.workspace"] {
+            assert!(text.contains(key), "{}: no {key}", manifest.display());
+        }
+        let library = fs::read_to_string(manifest.with_file_name("src").join("lib.rs")).unwrap();
+        let front_page = library.lines().take_while(|line| line.starts_with("//!"));
+        assert!(
+            front_page.filter(|line| line.starts_with("//! ```")).count() >= 2,
+            "{}: no example",
+            manifest.display()
+        );
+    }
+}

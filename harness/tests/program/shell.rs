@@ -1,4 +1,4 @@
-//! Completions and manual pages.
+//! Completions, manual pages, licences.
 
 use crate::common::harness;
 
@@ -33,4 +33,29 @@ fn every_subcommand_has_a_manual_page() {
     let file = root.path().join("file");
     std::fs::write(&file, "").unwrap();
     assert_eq!(harness(&["man", file.to_str().unwrap()], "").code, 3);
+}
+
+#[test]
+fn the_licences_are_those_of_what_is_locked() {
+    let notices = harness(&["licences"], "").stdout;
+    assert!(notices.contains("Bitstream Vera Fonts Copyright"));
+    let lock = include_str!("../../../Cargo.lock");
+    let crates: Vec<[&str; 2]> = notices
+        .lines()
+        .filter_map(|line| line.strip_prefix("| "))
+        .filter_map(|line| line.split(" | ").collect::<Vec<_>>().first_chunk().copied())
+        .filter(|[name, _]| *name != "crate")
+        .collect();
+    assert!(crates.len() > 50, "{}", crates.len());
+    for [name, version] in &crates {
+        let locked = format!("name = \"{name}\"\nversion = \"{version}\"\n");
+        assert!(lock.contains(&locked), "{name} {version}: cargo run -p fairflight-tests --example notices");
+    }
+    // What the harness depends on is in the program; on Windows and elsewhere more crates are.
+    let manifest = include_str!("../../Cargo.toml");
+    let own = manifest.split("[dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
+    for name in own.lines().filter_map(|line| line.split(" = ").next()).filter(|name| !name.is_empty()) {
+        let is_listed = crates.iter().any(|[listed, _]| *listed == name);
+        assert!(is_listed || name.starts_with("fairflight-"), "{name} is not in the notices");
+    }
 }
