@@ -54,7 +54,7 @@ pub(crate) fn folder(parent: &Path, name: &OsStr, what: &str) -> io::Result<(Tem
     }
 }
 
-/// What killed runs left beside the target `name`, each with what keeps others from it.
+/// Partial files that killed runs left beside the target `name`, each with the lock that keeps others from it.
 pub(crate) fn abandoned(parent: &Path, name: &OsStr, what: &str) -> Vec<(PathBuf, File)> {
     let prefix = prefix(name, what);
     let entries = fs::read_dir(parent).into_iter().flatten().flatten();

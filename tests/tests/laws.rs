@@ -121,10 +121,14 @@ fn every_sampler_of_free_flights_is_in_the_catalogue() {
     for (folder, of_lines) in [("crates/freeflight/src", true), ("crates/freeflight/src/spectral", false)] {
         for entry in fs::read_dir(repository().join(folder)).unwrap().flatten() {
             let code = fs::read_to_string(entry.path()).unwrap_or_default();
-            for line in code.lines().filter(|line| line.starts_with("impl<") && line.contains("FreeFlight<"))
-            {
-                let kind = line.split(" for ").last().unwrap().split(['<', ' ']).next().unwrap();
-                if kind.starts_with('&') {
+            let code = code.split_whitespace().collect::<Vec<_>>().join(" ");
+            for implementation in code.split("impl<").skip(1) {
+                let header = implementation.split('{').next().unwrap();
+                let Some((before, kind)) = header.rsplit_once(" for ") else { continue };
+                // The trait itself, not a bound on one of its types.
+                let arguments = before.rsplit_once("FreeFlight<").map_or("", |(_, arguments)| arguments);
+                let kind = kind.split(['<', ' ']).next().unwrap();
+                if arguments.find('>') != Some(arguments.len().wrapping_sub(1)) || kind.starts_with('&') {
                     continue;
                 }
                 let name = name_of(kind);

@@ -1,4 +1,4 @@
-//! What Fairflight proves of itself, as data: every law on every medium, wrong twins, hard cases.
+//! Checks of Fairflight as data: every law on every medium, wrong twins, hard cases.
 //!
 //! * [`catalogue()`]: all checks by name, what `verify` runs.
 //! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
@@ -8,6 +8,15 @@
 //!
 //! The laws of estimators, free flights and phase functions are functions of `fairflight-laws`. Nothing here knows files, clocks,
 //! threads or plots. Every check is a function of its [`Run`](fairflight_laws::Run) alone, so that a caller may run many at once.
+//!
+//! ```
+//! use fairflight_catalogue::{Effort, catalogue, check_level};
+//!
+//! // The decision of delta tracking at a collision, checked without chance.
+//! let check = catalogue().into_iter().find(|check| check.id == "exact/decision/woodcock").unwrap();
+//! assert_eq!(check.kinds, ["woodcock"]);
+//! assert_eq!(check.run(Effort::Quick, 1, check_level()).holds, Some(true));
+//! ```
 
 mod checks;
 mod hard_cases;

@@ -32,7 +32,7 @@ const ALTERNATIVES: &str = "what a picture costs is not measured; advice is give
 pub(super) struct Question {
     /// What it is called in the answer.
     pub(super) name: String,
-    /// What was read; without it the command line says all.
+    /// The text that was read; none where the command line says all.
     input: Option<Input>,
     medium: AnyMedium,
     bounds: Bounds,

@@ -37,7 +37,7 @@ pub fn pilot(profile: &AnyProfile, majorant: f64, seed: u64) -> Pilot {
     }
 }
 
-/// What a pilot of each of these profiles tells, and the look-ups of all.
+/// The experience of a pilot on each of these profiles, and the look-ups of all.
 pub(super) fn experience<'a>(
     profiles: impl Iterator<Item = &'a AnyProfile>,
     majorant: f64,

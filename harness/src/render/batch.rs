@@ -1,9 +1,9 @@
-//! What all tiles of a pass share.
+//! Virtual point lights and photons that all tiles of a pass share.
 
 use super::photons::PhotonLayer;
 use fairflight_vpl::Vpl;
 
-/// What is prepared for a pass, and shared by all its tiles.
+/// Virtual point lights and photons of a pass, shared by all its tiles.
 #[derive(Clone, Debug)]
 pub(super) struct Batch<C> {
     /// None for an integrator that does not gather.

@@ -99,7 +99,7 @@ impl<C> Batch<C> {
     }
 }
 
-/// What draws a tile: the sum of its samples, and what they cost.
+/// Draws a tile: the sum of its samples, and their cost.
 type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> Result<(f64, Spent), Failure> + Sync + 'a;
 
 /// The volume of a tile, observed.

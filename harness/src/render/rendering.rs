@@ -18,7 +18,7 @@ const FILES_EVERY: f64 = 2.0;
 /// The least time between two errors in the progress bar \[s\].
 const ERROR_EVERY: f64 = 0.1;
 
-/// What is to be rendered, and compared with what.
+/// A scene to be rendered, with the image that it is compared with.
 pub(super) struct Rendering<'a> {
     pub input: &'a Input,
     pub media: &'a MediumLibrary,
@@ -57,7 +57,7 @@ impl Rendering<'_> {
         painted.map_err(|failure| self.in_scene(failure))
     }
 
-    /// What the progress bar says of an unfinished image, if there is something to compare it with.
+    /// The error of an unfinished image in words, for the progress bar; none without an image to compare it with.
     fn error(&self, painting: &Painting<'_>) -> Option<String> {
         let (reference, _) = self.reference.as_ref()?;
         let rmse = painting.moments().squared_error(reference).sqrt();

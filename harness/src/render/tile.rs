@@ -115,7 +115,7 @@ impl<C: Spectrum> Tile<C> {
     }
 }
 
-/// What was added to a tile.
+/// The samples that a pass added to a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Added {
     /// The sum of all samples, in the mean of their channels.

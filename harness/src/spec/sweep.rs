@@ -5,7 +5,7 @@ use crate::reader::Node;
 use crate::reader::rule::one_of;
 use serde_json::Value;
 
-/// What a file asks for: one thing, or one for each value of a swept key.
+/// The request of a file: one thing, or one for each value of a swept key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request<T> {
     /// One thing.

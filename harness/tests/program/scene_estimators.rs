@@ -7,7 +7,7 @@ use fairflight_harness::spec::IntegratorSpec;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// What comes of an estimator in a scene.
+/// The fate of an estimator in a scene.
 #[derive(Clone, Debug)]
 enum Decision {
     /// The picture of regular tracking.

@@ -169,7 +169,7 @@ fn the_tables_of_the_documentation_are_those_of_the_program() {
     assert!(found == tables(), "`harness schema --tables` prints other tables: put them between the marks");
 }
 
-/// What scenes and experiments know, and what draws distances.
+/// Kinds of scenes and experiments, and samplers of distances.
 fn registered() -> BTreeSet<&'static str> {
     EstimatorSpec::NAMES.iter().chain(IntegratorSpec::NAMES).copied().collect()
 }

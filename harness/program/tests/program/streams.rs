@@ -1,4 +1,4 @@
-//! What goes to standard output and to standard error.
+//! Standard output and standard error of the program.
 
 use crate::common::{Running, entries, wait_for};
 use serde_json::Value;

@@ -177,7 +177,7 @@ where
     }
 }
 
-/// What is refused of the look-ups of a hundred estimates.
+/// Refusals among the look-ups of a hundred estimates.
 fn watched<'f, E>(profile: &'f Profile, estimator: &E) -> Found
 where
     for<'e> &'e E: TransmittanceEstimator<&'f Profile> + TransmittanceEstimator<Observed<&'f Profile, &'e E>>,

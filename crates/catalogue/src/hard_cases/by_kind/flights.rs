@@ -88,7 +88,7 @@ where
     Found { result, refused: evidence.err().map(|refusal| refusal.to_string()) }
 }
 
-/// What is refused of the look-ups of a hundred flights.
+/// Refusals among the look-ups of a hundred flights.
 fn watched<E>(profile: &Profile, sampler: &E) -> Found
 where
     for<'f, 'e> &'e E: FreeFlight<&'f Profile> + FreeFlight<ObservedFlight<&'f Profile, &'e E>>,

@@ -20,9 +20,9 @@ use std::collections::BTreeSet;
 pub(super) use profile::Profile;
 pub use spared::{ROWS, SAMPLERS, spared};
 
-/// What came of one subject on one profile.
+/// The result of one subject on one profile.
 struct Found {
-    /// What the law says.
+    /// The judgement of the law.
     result: CheckResult,
     /// The refusal, if it is one.
     refused: Option<String>,
@@ -42,7 +42,7 @@ struct Subject {
     is_tried: fn(&Profile) -> bool,
     /// Its law on a profile.
     examine: fn(&Profile, Run) -> Found,
-    /// What is refused of its look-ups.
+    /// Finds the refusals among its look-ups.
     watch: fn(&Profile) -> Found,
     /// Whether what it draws is finite and lawful.
     draw: fn(&Profile, &mut End) -> bool,

@@ -8,7 +8,7 @@ use fairflight_media::{
 };
 use std::sync::Arc;
 
-/// What stands along the ray.
+/// The extinction along the ray.
 #[derive(Clone, Debug)]
 enum Along {
     Constant(Constant),

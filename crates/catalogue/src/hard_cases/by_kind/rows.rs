@@ -3,7 +3,7 @@
 use super::profile::Profile;
 use crate::hard_cases::voxel_faces;
 
-/// What the bounds that a profile claims are worth.
+/// The truth of the bounds that a profile claims.
 #[derive(Clone, Debug)]
 pub(super) enum Setting {
     /// They hold.
@@ -20,7 +20,7 @@ pub(super) enum Setting {
 #[derive(Clone)]
 pub(super) struct Row {
     pub(super) number: u32,
-    /// What is hard.
+    /// The difficulty, in words.
     pub(super) what: &'static str,
     /// The exact answer.
     pub(super) exact: &'static str,

@@ -1,4 +1,4 @@
-//! Which kinds a row does not concern, and why.
+//! Kinds that a row does not concern, with the reasons.
 
 use super::integrators::is_integrator;
 use super::{estimators, flights, spectral};
