@@ -22,7 +22,7 @@ const MOST_SAMPLES: f64 = 2e7;
 
 impl Run {
     /// The same run with at least as many samples as the closed moments of `references` ask for at this `level` each: enough for
-    /// their tests to hold it, and to find a bias of [`DETECTABLE`]. No seed enters.
+    /// their tests to hold it, and to find a relative bias of 4.5 %. No seed enters.
     #[must_use]
     pub fn sufficient_for(self, references: impl IntoIterator<Item = Reference>, level: f64) -> Self {
         let needed = references
