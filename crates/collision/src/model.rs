@@ -55,7 +55,7 @@ pub struct Albedo(f64);
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("albedo must lie in [0, 1], found {found}")]
 pub struct AlbedoError {
-    /// What was given.
+    /// The value given.
     pub found: f64,
 }
 

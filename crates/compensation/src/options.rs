@@ -1,4 +1,4 @@
-//! What a correction does, as values.
+//! Choices of a correction, as values.
 
 /// How compensation vertices go with virtual point lights (engelhardt-2013 section 4.3, fig. 6).
 ///
@@ -58,7 +58,7 @@ pub struct CompensationOptions {
     pub transmittance: TransmittanceUse,
     /// The greatest number of vertices behind each other; `None`: until the recursion ends by itself. A limit is a bias by design.
     pub steps: Option<u32>,
-    /// What blocks the way to them.
+    /// The surfaces that block the way to them.
     pub visibility: Visibility,
 }
 
@@ -95,7 +95,7 @@ impl CompensationOptions {
         }
     }
 
-    /// What is biased by design, if anything is.
+    /// The bias by design, if there is one.
     #[must_use]
     pub fn biased_by_design(&self) -> Option<&'static str> {
         if self.steps.is_some() {

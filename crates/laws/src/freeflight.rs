@@ -221,7 +221,7 @@ pub fn check_flights<G: Extinction, E: FreeFlight<G>>(
     Ok(measure(|source| sampler.sample(&field, source), &uncounted, run, || 0)?.judged(&uncounted, run))
 }
 
-/// What was measured of a run of flights.
+/// Measurements of a run of flights.
 pub(crate) struct Measured {
     collided: [Moments; TEST_FUNCTIONS.len()],
     escaped: Moments,

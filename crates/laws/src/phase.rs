@@ -67,7 +67,7 @@ pub enum Broken {
     },
 }
 
-/// What came out of a run.
+/// The outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
     /// On the cosines of the drawn directions; detectable is a relative deviation of the probability of one cell.

@@ -66,7 +66,7 @@ impl Expectation {
     }
 }
 
-/// What came out of a run.
+/// The outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
     /// The moments of the estimates, in the unit of the expectation.

@@ -27,7 +27,7 @@ pub enum GridError {
     /// A grid without cells, or with more than memory should be spent on.
     #[error("cells must be 1 to {most} in each direction, found {found}", most = Grid::MOST_CELLS)]
     Cells {
-        /// What was given.
+        /// The value given.
         found: usize,
     },
     /// As many values as cells.

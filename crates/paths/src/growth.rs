@@ -20,7 +20,7 @@ pub struct Growth {
     pub standard_error: f64,
 }
 
-/// What follows from a [`Growth`].
+/// The conclusion from a [`Growth`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criticality {
     /// The second moment exists: the factor is below 1 by four standard errors.

@@ -1,4 +1,4 @@
-//! What estimates a pixel.
+//! Integrators: estimators of the radiance of a pixel.
 
 use fairflight_media::Line;
 use fairflight_sources::UniformSource;

@@ -31,7 +31,7 @@ pub struct Uniform {
 pub struct NotPositive {
     /// The parameter.
     pub what: &'static str,
-    /// What was given.
+    /// The value given.
     pub found: f64,
 }
 

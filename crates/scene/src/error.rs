@@ -1,4 +1,4 @@
-//! What the constructors of a scene refuse.
+//! Refusals of the constructors of a scene.
 
 use crate::Spectrum;
 
@@ -32,13 +32,13 @@ pub enum SceneError {
     Degenerate {
         /// The parameter.
         what: &'static str,
-        /// What it is.
+        /// The property that makes it useless.
         because: &'static str,
     },
     /// The field of view is no angle that a pinhole can have.
     #[error("vertical_fov_degrees must lie between 0 and 180, found {found}")]
     FieldOfView {
-        /// What was given \[°\].
+        /// The angle given \[°\].
         found: f64,
     },
     /// A picture without pixels.

@@ -48,10 +48,10 @@ pub use volume::Volume;
 /// A camera that looks at a medium among lights.
 #[derive(Clone, Debug)]
 pub struct Scene<M, P, C> {
-    /// Who looks.
+    /// The camera.
     pub camera: Camera,
-    /// What scatters.
+    /// The medium in its bounds.
     pub volume: Volume<M, P, C>,
-    /// What shines.
+    /// The lights.
     pub lights: Lights<C>,
 }

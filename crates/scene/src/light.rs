@@ -85,9 +85,9 @@ impl<C: Spectrum> Source<C> {
 /// All lights of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lights<C> {
-    /// What a ray meets when it leaves everything.
+    /// Radiance of rays that leave the scene.
     pub background: Background<C>,
-    /// What it can only be connected with.
+    /// Lights that no ray meets by chance: points and directions.
     pub sources: Vec<Source<C>>,
 }
 

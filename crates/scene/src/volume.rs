@@ -13,7 +13,7 @@ pub struct Volume<M, P, C> {
     pub bounds: Bounds,
     /// σ_s/σ_t per channel \[1\]; above 1 only where the scene permits a gain.
     pub albedo: C,
-    /// Whereto it scatters.
+    /// The phase function.
     pub phase: P,
 }
 

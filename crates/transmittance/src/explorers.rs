@@ -18,7 +18,7 @@ pub struct Explorers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("explorers need a count of at least 2, found {found}")]
 pub struct TooFewExplorers {
-    /// What was given.
+    /// The value given.
     pub found: usize,
 }
 

@@ -48,13 +48,13 @@ pub enum EpsilonError {
     /// Infinitely many strata.
     #[error("epsilon must be positive, found {found}")]
     NotPositive {
-        /// What was given.
+        /// The value given.
         found: f64,
     },
     /// Estimates would leave \[0, 1\].
     #[error("epsilon must not exceed 1, found {found}")]
     AboveOne {
-        /// What was given.
+        /// The value given.
         found: f64,
     },
 }

@@ -31,7 +31,7 @@ pub enum RateError {
     /// No collision would ever happen, or infinitely many.
     #[error("rate must be positive and finite, found {found}")]
     NotPositive {
-        /// What was given.
+        /// The value given.
         found: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! What can be added to make up for bounding.
+//! Corrections that make up for bounding.
 
 use crate::{Connected, Gather};
 use fairflight_paths::transport::{Types, Vertex};

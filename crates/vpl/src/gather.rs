@@ -77,7 +77,7 @@ impl<W: Types> fmt::Debug for Gather<'_, W> {
 }
 
 impl<W: Types> Gather<'_, W> {
-    /// What one virtual point light adds.
+    /// The contribution of one virtual point light.
     #[inline]
     pub fn one(&mut self, y: &Vertex, index: usize, source: &mut impl UniformSource) -> W::Spectrum {
         let vpl = &self.vpls[index];
@@ -113,7 +113,7 @@ impl<W: Types> Gather<'_, W> {
         vpl.power * (scattering * term * visibility)
     }
 
-    /// What several of them add.
+    /// The contribution of several virtual point lights.
     #[inline(never)]
     pub fn connected(
         &mut self,

@@ -16,7 +16,7 @@ pub enum Pairing {
     One,
 }
 
-/// Which part of the light is rendered.
+/// The part of the light that is rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Component {
     /// All of it.
@@ -236,7 +236,7 @@ mod tests {
         vacuum(surfaces, vec![Source::point(dvec3(0.0, 0.0, 0.5), PI).unwrap()])
     }
 
-    /// What the light of [`room`] adds at the origin.
+    /// The contribution of the light of [`room`] at the origin.
     const DIRECT: f64 = 0.5 * FRAC_1_PI;
 
     fn by_hand(vpls: &[Vpl<f64>]) -> Vec<f64> {

@@ -8,9 +8,9 @@ use fairflight_scene::Spectrum;
 pub struct Ledger<C> {
     /// Light paths.
     pub paths: u64,
-    /// What they started with.
+    /// Power that light paths started with.
     pub emitted: C,
-    /// What left the scene.
+    /// Power that left the scene.
     pub escaped: C,
     /// What points and directions sent straight into smooth surfaces, behind which nobody else sees them.
     pub unseen: C,

@@ -12,7 +12,7 @@ pub(super) struct Part {
     pub(super) verdict: Verdict,
 }
 
-/// What came out of a run of flights.
+/// The outcome of a run of flights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightEvidence {
     pub(super) flights: Vec<Part>,

@@ -13,7 +13,7 @@ pub enum Technique {
     Scattering,
 }
 
-/// What is done with a camera ray.
+/// The sampling of a camera ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampling {
     /// One technique.

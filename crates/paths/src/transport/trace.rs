@@ -9,7 +9,7 @@ use fairflight_sources::UniformSource;
 /// A path's radiance, and whether it was cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traced<C> {
-    /// What was found.
+    /// Radiance along the ray, by this path.
     pub radiance: C,
     /// Whether the path had more vertices or collisions than it was allowed: the rest is missing, a bias.
     pub is_cut: bool,

@@ -11,14 +11,14 @@ use fairflight_sources::UniformSource;
 use glam::DVec3;
 use std::fmt;
 
-/// What paths meet. A scene without surfaces has [`NoSurfaces`](fairflight_scene::NoSurfaces), one without a medium a medium that is
+/// A medium, surfaces and lights, as paths meet them. A scene without surfaces has [`NoSurfaces`](fairflight_scene::NoSurfaces), one without a medium a medium that is
 /// empty by its type: neither compiles to code of the other.
 pub struct World<'s, W: Types> {
-    /// What scatters on the way.
+    /// The scattering medium.
     pub volume: &'s Volume<W::Medium, W::Phase, W::Spectrum>,
-    /// What ends the way.
+    /// The surfaces.
     pub surfaces: &'s W::Geometry,
-    /// What shines, apart from surfaces.
+    /// The lights, apart from surfaces.
     pub lights: &'s Lights<W::Spectrum>,
 }
 

@@ -32,7 +32,7 @@ pub struct Hit<'s, C> {
     pub normal: DVec3,
     /// Whether that is the outer side.
     pub outside: bool,
-    /// Which surface.
+    /// The surface that was met.
     pub index: usize,
     /// That surface.
     pub surface: &'s Surface<C>,

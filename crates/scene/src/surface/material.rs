@@ -1,4 +1,4 @@
-//! What a surface does with light.
+//! Reflection and refraction of light at a surface.
 
 use super::Shape;
 use crate::{SceneError, Spectrum};
@@ -26,7 +26,7 @@ pub enum Material<C> {
 pub struct Surface<C> {
     /// Where it is.
     pub shape: Shape,
-    /// What it does with light.
+    /// Its reflection and refraction of light.
     pub material: Material<C>,
     /// The radiance that it emits from both sides into all directions.
     pub emission: C,

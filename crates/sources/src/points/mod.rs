@@ -43,14 +43,14 @@ pub enum PointSetError {
     TooManyPoints {
         /// The most.
         most: u64,
-        /// What was asked for.
+        /// The number asked for.
         found: u64,
     },
     /// More coordinates than the set has; independent variates follow them anyway.
     TooManyDimensions {
         /// The most.
         most: usize,
-        /// What was asked for.
+        /// The number asked for.
         found: usize,
     },
 }
