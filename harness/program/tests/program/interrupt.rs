@@ -192,6 +192,11 @@ fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
         (r#""$0" "$@" <"$SCENE" & echo $!; wait $!"#, &["-INT", "-QUIT"], "-HUP"),
         (r#"trap '' TERM; exec "$0" "$@" <"$SCENE""#, &["-TERM"], "-INT"),
     ] {
+        let last = served(last);
+        if ignored.contains(&last) {
+            // Whoever started the tests ignores all others: nothing could end the program but a kill.
+            continue;
+        }
         let root = tempfile::tempdir().expect("a temporary folder");
         let specs = tempfile::tempdir().expect("a temporary folder");
         let spec = specs.path().join("scene.json");
@@ -226,7 +231,7 @@ fn what_was_ignored_stays_ignored_and_the_rest_is_served() {
         // Longer than a request would be waited for.
         std::thread::sleep(fairflight_harness::interrupt::GRACE + Duration::from_millis(500));
         assert_eq!(entries(root.path()), 2, "{shell}: still at work");
-        signal(served(last));
+        signal(last);
         wait_for("the end", || child.try_wait().expect("a state").is_some());
         assert_eq!(child.wait().expect("an end").code(), Some(130), "{shell}");
         assert_eq!(entries(root.path()), 0, "{shell}");

@@ -158,7 +158,7 @@ fn comb() -> Comb {
     Comb::new(4, CombShape::EndpointMatched).expect(LAWFUL)
 }
 
-/// The law of `estimator`, of at most as many estimates as `run` says.
+/// The law of `estimator`: as many estimates as it asks for, and as `run` says, within the budget.
 fn law<'f, E>(profile: &'f Profile, estimator: &E, run: Run) -> Found
 where
     E: ClosedForm<Profile>,
@@ -169,7 +169,7 @@ where
     let theory = estimator.theory(&mut quadrature, truth.optical_thickness, Tolerance::TIGHT);
     let expected = Expectation { truth, theory, scores: Scores::Unbounded, lookups: LookupLaw::Unknown };
     let cost = if theory.lookups.is_finite() { theory.lookups } else { profile.depth() };
-    let samples = super::affordable(run.samples, cost);
+    let samples = super::affordable(expected.sufficient(run).samples, cost);
     let evidence = check(profile, estimator, &expected, Run { samples, ..run });
     Found {
         result: CheckResult::of_evidence(&evidence),

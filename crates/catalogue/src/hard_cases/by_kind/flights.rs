@@ -74,7 +74,7 @@ fn cost(profile: &Profile) -> f64 {
     profile.depth_in_cells()
 }
 
-/// The law of `sampler`, of at most as many flights as `run` says.
+/// The law of `sampler`: as many flights as it asks for, and as `run` says, within the budget.
 fn law<E>(profile: &Profile, sampler: &E, weights: Weights, run: Run) -> Found
 where
     E: ClosedForm<Profile>,
@@ -82,7 +82,7 @@ where
 {
     let mut quadrature = RayQuadrature::new(profile.clone(), &profile.borders());
     let expected = FlightExpectation::new(&mut quadrature, sampler, weights, Tolerance::TIGHT);
-    let samples = super::affordable(run.samples, cost(profile));
+    let samples = super::affordable(expected.sufficient(run).samples, cost(profile));
     let evidence = check(profile, sampler, &expected, Run { samples, ..run });
     let result = CheckResult::of_flights(&evidence);
     Found { result, refused: evidence.err().map(|refusal| refusal.to_string()) }

@@ -69,7 +69,7 @@ fn is_lawful(profile: &Profile, flight: SpectralFlight<N>) -> bool {
     })
 }
 
-/// The law of each wavelength, of at most as many flights as `run` says.
+/// The law of each wavelength: as many flights as it asks for, and as `run` says, within the budget.
 fn law<E>(profile: &Profile, sampler: &E, weights: Weights, run: Run) -> Found
 where
     for<'f> E: ClosedForm<Wavelength<&'f Tinted, N>> + SpectralFreeFlight<Tinted, N>,
@@ -84,8 +84,9 @@ where
         let expected = FlightExpectation::new(&mut quadrature, sampler, weights, Tolerance::TIGHT);
         // Some closed forms of look-ups hold within the bounds only.
         let expected = if profile.keeps_its_bounds() { expected } else { expected.uncounted() };
-        let samples = super::affordable(run.samples, profile.depth_in_cells());
-        let run = Run { samples, seed: derive_seed(run.seed, index as u64), alpha: run.alpha / N as f64 };
+        let seed = derive_seed(run.seed, index as u64);
+        let run = expected.sufficient(Run { seed, alpha: run.alpha / N as f64, ..run });
+        let run = Run { samples: super::affordable(run.samples, profile.depth_in_cells()), ..run };
         let evidence = check(&field, sampler, index, &expected, run);
         let result = CheckResult::of_flights(&evidence);
         refused = refused.take().or(evidence.err().map(|refusal| refusal.to_string()));
