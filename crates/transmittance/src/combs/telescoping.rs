@@ -175,6 +175,17 @@ mod tests {
     use fairflight_sources::{Scripted, Seeded};
 
     #[test]
+    fn a_difference_is_a_number_where_its_factors_are_none() {
+        // exp(-800) underflows, sinh²(400) overflows: −2 · exp(−800) · exp(800)/4.
+        assert_relative_eq!(difference(-800.0, 400.0), -0.5, max_relative = 1e-12);
+        assert_relative_eq!(difference(-800.0, -400.0), -0.5, max_relative = 1e-12);
+        assert_eq!(difference(-800.0, 0.0), 0.0);
+        // On either side of where the two forms meet.
+        let (below, above) = (difference(699.75, 0.75), difference(700.25, 0.75));
+        assert_relative_eq!(above / below, 0.5_f64.exp(), max_relative = 1e-12);
+    }
+
+    #[test]
     fn the_difference_is_that_of_nested_combs() {
         let (ray, shape) = (seed_ray(), CombShape::EndpointMatched);
         let estimator = Telescoping::new(5, 0.8, shape).unwrap();
