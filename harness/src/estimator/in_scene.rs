@@ -18,7 +18,7 @@ pub struct InScene<'a> {
     /// Rays of the kind that will be estimated, from a stream of their own.
     pub rays: Vec<Clip>,
     /// Grids of bounds that were built so far.
-    pub library: &'a MediumLibrary,
+    pub media: &'a MediumLibrary,
 }
 
 /// Look-ups before the first pixel, which none is charged with.
@@ -47,7 +47,7 @@ impl InScene<'_> {
         given.map_or_else(|| self.medium.declared_extinction(key), Ok)
     }
 
-    /// No ray in the bounds is longer \[length\].
+    /// Length that no ray in the bounds exceeds \[length\].
     pub(super) fn longest(&self) -> f64 {
         2.0 * self.bounds.enclosing_ball().1
     }
@@ -57,7 +57,7 @@ impl InScene<'_> {
         self.rays.iter().filter_map(|clip| AnyProfile::ray(self.medium, clip).ok()).collect()
     }
 
-    /// Whether rays of these look-ups are no slip of the keyboard: nothing else has asked yet how long the image takes.
+    /// Checks that a few rays of these look-ups are affordable: it guards against a slip of the keyboard, before the budget of the image is known.
     ///
     /// # Errors
     /// If they are.
@@ -78,7 +78,7 @@ impl InScene<'_> {
     /// If the medium does not know its bounds in boxes, or there are too many of them.
     pub(super) fn grid(&self, longest: u32, key: &str) -> Result<Option<Arc<BoundGrid>>, Failure> {
         let Some(spec) = self.spec else { return Ok(None) };
-        self.library.bound_grid((spec, longest), || self.build_grid(longest, key)).map(Some)
+        self.media.bound_grid((spec, longest), || self.build_grid(longest, key)).map(Some)
     }
 
     fn build_grid(&self, longest: u32, key: &str) -> Result<BoundGrid, Failure> {

@@ -94,7 +94,7 @@ impl ScenePlan {
             spec: spec.medium.as_ref().map(|volume| &volume.medium),
             bounds: &bounds,
             rays: rays_of(spec, &bounds),
-            library,
+            media: library,
         };
         let integrator = IntegratorPlan::build(&spec.integrator, &scene)?;
         Ok(Self {

@@ -14,19 +14,19 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 struct Cloud {
-    library: MediumLibrary,
+    media: MediumLibrary,
     spec: MediumSpec,
     medium: Arc<Voxels<VoxelLattice>>,
     bounds: Bounds,
 }
 
 fn cloud() -> Cloud {
-    let library = MediumLibrary::default();
+    let media = MediumLibrary::default();
     let json = json!({ "kind": "vdb", "file": fixture("eq21_64.vdb") });
     let spec = MediumSpec::read(&Node::root(&json)).unwrap();
-    let (medium, bounds) = spec.kind().build(&library, "medium").unwrap();
+    let (medium, bounds) = spec.kind().build(&media, "medium").unwrap();
     let AnyMedium::Voxels(medium) = medium else { panic!("no voxels") };
-    Cloud { library, spec, medium, bounds }
+    Cloud { media, spec, medium, bounds }
 }
 
 impl Cloud {
@@ -38,7 +38,7 @@ impl Cloud {
             spec: Some(&self.spec),
             bounds: &self.bounds,
             rays: Vec::new(),
-            library: &self.library,
+            media: &self.media,
         };
         spec.kind().for_all_rays(&scene, "estimator").unwrap()
     }
