@@ -102,7 +102,7 @@ pub(crate) struct ReportArguments {
     /// A factor in front of its values
     #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
     pub scale: f64,
-    /// Where to write [default: reports/NAME in the working directory]
+    /// Folder to write into [default: reports/NAME in the working directory]
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
     /// The seed of all variates
@@ -198,7 +198,7 @@ pub(crate) struct RenderArguments {
     /// The scene; - reads standard input
     #[arg(value_name = "SCENE.json")]
     pub scene: PathBuf,
-    /// Where to write, by extension: .pfm and .exr linear radiance, .png tone-mapped, .json statistics; may be repeated.
+    /// File to write, by extension: .pfm and .exr linear radiance, .png tone-mapped, .json statistics; may be repeated.
     /// The images of a sweep are numbered from 0: NAME-0.png for the first value of NAME.png
     #[arg(long, value_name = "IMAGE", required = true)]
     pub out: Vec<PathBuf>,

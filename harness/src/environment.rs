@@ -47,13 +47,13 @@ impl Environment {
         Self { quiet, form, ..self }
     }
 
-    /// Whether notes for a person are left out.
+    /// True if notes for a person are left out.
     #[must_use]
     pub fn is_quiet(&self) -> bool {
         self.quiet
     }
 
-    /// Whether results are shown as tables, unless JSON is asked for.
+    /// True if results are shown as tables, unless JSON is asked for.
     #[must_use]
     pub fn shows_tables(&self) -> bool {
         self.host.tables
@@ -72,7 +72,7 @@ impl Environment {
         Provenance { seed, revision, command: self.command.clone(), spec: None }
     }
 
-    /// Whether progress is told as bars: only where there is a terminal.
+    /// True if progress is told as bars: only on a terminal.
     #[must_use]
     pub fn draws_bars(&self) -> bool {
         self.host.progress && self.form == ProgressForm::Bar && !self.quiet

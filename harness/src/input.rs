@@ -58,7 +58,7 @@ impl Input {
         }
     }
 
-    /// Where the numbers of `seed` come from that were made from this text.
+    /// Provenance of numbers that were made from this text with this `seed`.
     ///
     /// # Errors
     /// If it is no JSON.

@@ -101,7 +101,7 @@ fn holders(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
         .collect()
 }
 
-/// Whether a licence leaves a choice that includes one of the two of this project, whose texts are in the repository.
+/// True if a licence leaves a choice that includes one of the two of this project, whose texts are in the repository.
 fn is_dual(licence: &str) -> bool {
     let choices = licence.split(" OR ").flat_map(|choice| choice.split('/'));
     choices.into_iter().any(|choice| matches!(choice.trim(), "MIT" | "Apache-2.0"))

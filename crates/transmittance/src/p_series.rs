@@ -35,7 +35,7 @@ pub enum PSeriesVersion {
 /// by induction over k, but P_k are no numbers known beforehand. (4) `Ratio` is no sum: E over K of Π (1 − X/t_c) is
 /// exp(−t_c E\[X\]/t_c). Its points are those of ratio tracking with the rate t_c/S, unsorted: the same law.
 ///
-/// Where t_c = 0 the first three P_k vanish (not for `Cumulative`): admitted for X = 0 only.
+/// With t_c = 0 the first three P_k vanish (not for `Cumulative`): admitted for X = 0 only.
 ///
 /// **Moments.** `Ratio`: all, by [`ProductLaw`]. `Cumulative`: a bound of the variance. For the others the second moment is usually written as a
 /// double sum; here the variance, all of it positive terms. (5) Follow the expectation of the estimate given what is known.

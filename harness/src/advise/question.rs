@@ -95,7 +95,7 @@ impl Question {
         question(name, Some(input), &spec, None)
     }
 
-    /// Where the numbers of `seed` come from.
+    /// Provenance of the answer to a question with this `seed`.
     ///
     /// # Errors
     /// If what was read is no JSON.

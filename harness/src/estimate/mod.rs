@@ -58,7 +58,7 @@ pub(crate) fn run(
 /// An experiment before it is drawn, and the value of the swept key, if there is one.
 type Point = (Option<Value>, Prepared);
 
-/// All experiments of a request, none of which is drawn before all are known to be lawful and together within
+/// Plans of the experiments of a request, none of which is drawn before all are known to be lawful and together within
 /// the budget.
 fn prepare(request: &Request<Experiment>, budget: Budget) -> Result<Vec<Point>, Failure> {
     let library = MediumLibrary::default();

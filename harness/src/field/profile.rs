@@ -115,7 +115,7 @@ impl AnyProfile {
         }
     }
 
-    /// Whether this is a ray that meets nothing of its medium.
+    /// True for a ray that meets nothing of its medium.
     #[must_use]
     pub fn misses(&self) -> bool {
         let is_ray = !matches!(

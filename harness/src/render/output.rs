@@ -47,7 +47,7 @@ impl Targets {
         paths.iter().map(|path| Ok((path.clone(), Kind::of(path)?))).collect::<Result<_, _>>().map(Self)
     }
 
-    /// Whether one of them is tone-mapped.
+    /// True if one of them is tone-mapped.
     pub(super) fn has_tone_mapped(&self) -> bool {
         self.0.iter().any(|(_, kind)| *kind == Kind::Image(Format::Png))
     }
@@ -67,7 +67,7 @@ impl Targets {
     }
 }
 
-/// All files that an image is written into, once or again and again.
+/// Files that an image is written into, once or again and again.
 #[derive(Debug)]
 pub(super) struct Outputs {
     targets: Vec<(PathBuf, Kind)>,

@@ -19,7 +19,7 @@ pub(super) struct Point<'a> {
     pub plan: ScenePlan,
 }
 
-/// All scenes of a request, none of which is drawn before all are known to fit together.
+/// Plans of the scenes of a request, none of which is drawn before all are known to fit together.
 pub(super) fn points<'r>(
     request: &'r Request<SceneSpec>,
     arguments: &RenderArguments,
@@ -38,7 +38,7 @@ pub(super) fn points<'r>(
     request.points().into_iter().map(point).collect()
 }
 
-/// Whether all scenes may be drawn within the budget; a warning where that takes more than an hour.
+/// Checks that the scenes together are within the budget; returns a warning if they take more than an hour.
 pub(super) fn within_budget(
     points: &[Point<'_>],
     arguments: &RenderArguments,

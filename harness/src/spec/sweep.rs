@@ -64,7 +64,7 @@ impl<T> Request<T> {
         }
     }
 
-    /// All that is asked for, each with the value of the swept key, if there is one.
+    /// The requests one by one, each with the value of the swept key, if there is one.
     #[must_use]
     pub fn points(&self) -> Vec<(Option<&Value>, &T)> {
         match self {

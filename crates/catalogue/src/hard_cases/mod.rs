@@ -87,9 +87,9 @@ pub struct HardCase {
     pub exact: String,
     /// How near is right.
     pub tolerance: &'static str,
-    /// Whether it is made from the table of kinds, and has no set-up of its own.
+    /// True if it is made from the table of kinds, and has no set-up of its own.
     pub of_table: bool,
-    /// Whether a refusal is the right answer, in part at least.
+    /// True if a refusal is the right answer, in part at least.
     pub refusal: bool,
     /// N of a judged run; 0 for a deterministic evaluation.
     pub samples: u64,
@@ -165,7 +165,7 @@ impl std::fmt::Debug for HardCase {
     }
 }
 
-/// All hard cases, by number.
+/// The hard cases, by number.
 #[must_use]
 pub fn hard_cases() -> Vec<HardCase> {
     let mut cases = vacuum::cases();

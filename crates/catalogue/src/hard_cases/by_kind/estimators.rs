@@ -43,7 +43,7 @@ macro_rules! estimator {
     };
 }
 
-/// All estimators, several of a kind with versions.
+/// Estimators of every kind, several of a kind with versions.
 pub(super) fn subjects() -> Vec<Subject> {
     let all = vec![
         estimator!("woodcock", "woodcock", above: false, below: false, |_| Woodcock),
@@ -128,7 +128,7 @@ pub(super) fn subjects() -> Vec<Subject> {
     all.into_iter().map(|subject| Subject { is_tried: trials(&subject), ..subject }).collect()
 }
 
-/// Where an estimator is tried.
+/// Selects the profiles that an estimator is tried on.
 fn trials(subject: &Subject) -> fn(&Profile) -> bool {
     match (subject.kind, subject.name) {
         // It connects all points of two walks.

@@ -38,7 +38,7 @@ macro_rules! flight {
     };
 }
 
-/// All samplers, several of a kind with versions.
+/// Samplers of every kind, several of a kind with versions.
 pub(super) fn subjects() -> Vec<Subject> {
     vec![
         flight!("inversion_flight", "inversion", above: true, below: false, Weights::One, |_| Inversion),

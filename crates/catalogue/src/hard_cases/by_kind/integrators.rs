@@ -34,14 +34,14 @@ type Setting = (Ball, Line, f64);
 /// Radiance of one estimate along a line.
 type Radiance = fn(&Ball, &Line, &mut dyn UniformSource) -> f64;
 
-/// When one estimate is exact.
+/// Condition under which one estimate is exact.
 #[derive(Clone, Copy, PartialEq)]
 enum Exact {
-    /// Where nothing is absorbed, every path sees the background.
+    /// Exact without absorption: every path sees the background.
     Furnace,
-    /// Where nothing is scattered, the thickness in closed form attenuates it.
+    /// Exact without scattering: the optical thickness in closed form attenuates the background.
     Absorbing,
-    /// Where nothing is met.
+    /// Exact on rays that meet no matter.
     Vacuum,
 }
 
@@ -54,7 +54,7 @@ const INTEGRATORS: [(&str, Exact, Radiance); 6] = [
     ("vpl", Exact::Vacuum, vpl),
 ];
 
-/// Whether it is one of them.
+/// Tells whether a kind is an integrator.
 pub(super) fn is_integrator(kind: &str) -> bool {
     INTEGRATORS.iter().any(|(name, ..)| *name == kind)
 }
@@ -186,7 +186,7 @@ fn at_the_ends(index: usize) -> Outcome {
 /// Through the middle.
 const THROUGH: Line = Line { origin: DVec3::ZERO, direction: DVec3::Z };
 
-/// All cases of integrators.
+/// Hard cases of every integrator.
 pub(super) fn cases(own: &[HardCase]) -> Vec<HardCase> {
     let haze = Ball { sigma_t: 1.0, radius: 1.0, albedo: 1.0, anisotropy: 0.5, rate: 1.2 };
     let ball = |sigma_t: f64, radius: f64, rate: f64| Ball { sigma_t, radius, rate, ..haze };

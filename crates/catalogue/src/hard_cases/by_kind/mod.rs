@@ -34,22 +34,22 @@ struct Subject {
     kind: &'static str,
     /// Its name among those of its kind.
     name: &'static str,
-    /// Whether it admits σ_t above the majorant that a profile claims.
+    /// True if it admits σ_t above the majorant that a profile claims.
     above: bool,
-    /// Whether it admits σ_t below 0.
+    /// True if it admits σ_t below 0.
     below: bool,
-    /// Whether it is tried on a profile: what its law or its look-ups cost there may say nothing of how hard it is.
+    /// Selects the profiles that it is tried on: some have laws or look-ups too dear to evaluate.
     is_tried: fn(&Profile) -> bool,
     /// Its law on a profile.
     examine: fn(&Profile, Run) -> Found,
     /// Finds the refusals among its look-ups.
     watch: fn(&Profile) -> Found,
-    /// Whether what it draws is finite and lawful.
+    /// Draws once; true if the result is finite and lawful.
     draw: fn(&Profile, &mut End) -> bool,
 }
 
 impl Subject {
-    /// Whether the only right answer is a refusal.
+    /// True if the only right answer is a refusal.
     fn refuses(&self, setting: &Setting) -> bool {
         match setting {
             Setting::Lawful => false,
@@ -71,7 +71,7 @@ fn affordable(samples: u64, cost: f64) -> u64 {
     samples.min((BUDGET / cost.max(1.0)) as u64).max(2)
 }
 
-/// Whatever draws along a line.
+/// Estimators and samplers of every kind.
 fn subjects() -> Vec<Subject> {
     let mut all = estimators::subjects();
     all.extend(flights::subjects());
@@ -135,7 +135,7 @@ fn case(row: Row, kind: &'static str) -> HardCase {
     HardCase { refusal, ..case }.about([kind])
 }
 
-/// All subjects on all profiles of a row: each right, or refused where it must be.
+/// Evaluates a row, every subject on every profile: each right, or refused where it must be.
 fn put_through(row: &Row, subjects: &[Subject], run: Run) -> Outcome {
     let parts: Vec<(&Subject, &str, &Profile, &Setting)> = subjects
         .iter()

@@ -75,14 +75,14 @@ impl Profile {
         self.cells.iter().map(|cell| cell.to)
     }
 
-    /// Where what is drawn from it is not smooth: ends of cells, and the first mean free paths of the majorant, beyond which a dense
+    /// Distances at which a law of what is drawn is not smooth: ends of cells, and the first mean free paths of the majorant, beyond which a dense
     /// profile lets nothing through.
     pub(super) fn borders(&self) -> Vec<f64> {
         let paths = (0..12).map(|k| 3.0_f64.powi(k) / self.majorant());
         self.ends().chain(paths.filter(|&s| s < self.length())).collect()
     }
 
-    /// Whether σ_t lies between 0 and the majorant in the middle of each cell.
+    /// True if σ_t lies between 0 and the majorant in the middle of each cell.
     pub(super) fn keeps_its_bounds(&self) -> bool {
         let mut from = 0.0;
         self.cells.iter().all(|cell| {

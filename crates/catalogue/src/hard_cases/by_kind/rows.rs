@@ -6,7 +6,7 @@ use crate::hard_cases::voxel_faces;
 /// The truth of the bounds that a profile claims.
 #[derive(Clone, Debug)]
 pub(super) enum Setting {
-    /// They hold.
+    /// The bounds hold.
     Lawful,
     /// σ_t exceeds the majorant.
     Above,
@@ -34,7 +34,7 @@ pub(super) struct Row {
 const FEW: u64 = 2_000;
 const SOME: u64 = 20_000;
 
-/// All of them.
+/// The rows that are made kind by kind, by number.
 pub(super) fn rows() -> Vec<Row> {
     let lawful = |name: String, profile| (name, profile, Setting::Lawful);
     let thickness = |tau: f64| {

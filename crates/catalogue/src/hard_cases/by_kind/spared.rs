@@ -3,7 +3,7 @@
 use super::integrators::is_integrator;
 use super::{estimators, flights, spectral};
 
-/// All rows of the list: number, and what is asked.
+/// Rows of the list of hard cases: number and difficulty.
 pub const ROWS: [(u32, &str); 22] = [
     (1, "nothing on a very long ray, with rates of 0"),
     (2, "nothing on the ray, but a dense region in the same bounds"),

@@ -40,7 +40,7 @@ macro_rules! wavelengths {
     };
 }
 
-/// All samplers, several of a kind with schemes.
+/// Spectral samplers of every kind, several of a kind with schemes.
 pub(super) fn subjects() -> Vec<Subject> {
     vec![
         wavelengths!("spectral_tracking", "max scheme", above: true, below: true, Weights::Any, |profile| {
@@ -61,7 +61,7 @@ pub(super) fn subjects() -> Vec<Subject> {
     ]
 }
 
-/// Whether each wavelength has a finite weight, and a collision that counts for one is where matter is.
+/// True if each wavelength has a finite weight, and a collision that counts for one is where matter is.
 fn is_lawful(profile: &Profile, flight: SpectralFlight<N>) -> bool {
     (0..N).map(|wavelength| flight.of(wavelength)).all(|flight| {
         let collides = |s: f64| (0.0..=profile.length()).contains(&s) && profile.sigma_t(s) > 0.0;
