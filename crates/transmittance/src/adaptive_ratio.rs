@@ -113,9 +113,9 @@ impl<F: Majorant> ClosedForm<F> for AdaptiveRatio {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::{agrees, seed_ray, theory_of};
+    use crate::test_support::{Broken, agrees, seed_ray, theory_of};
     use approx::assert_relative_eq;
-    use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant};
+    use fairflight_media::{Bounded, Constant, PiecewiseConstant};
     use fairflight_sources::{Scripted, Seeded};
 
     /// The variate whose exponential is `depth`.
@@ -169,15 +169,6 @@ mod tests {
 
     #[test]
     fn a_value_that_is_none_ends_the_walk_and_shows() {
-        struct Broken(f64);
-        impl Extinction for Broken {
-            fn sigma_t(&self, _: f64) -> f64 {
-                self.0
-            }
-            fn length(&self) -> f64 {
-                3.0
-            }
-        }
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let field = Bounded::new(Broken(value), 1.0).unwrap();
             let script = Scripted::new([variate(0.5), variate(0.5), variate(9.0)]);

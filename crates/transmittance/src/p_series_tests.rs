@@ -1,6 +1,6 @@
 use super::*;
 use crate::Tracking;
-use crate::test_support::{agrees, mean, mean_and_square, seed_ray, theory_of};
+use crate::test_support::{Broken, agrees, mean, mean_and_square, seed_ray, theory_of};
 use PSeriesVersion::{Cmf, Cumulative, NextFlight, Ratio};
 use approx::assert_relative_eq;
 use fairflight_collision::{Albedo, DoubleParticle};
@@ -230,15 +230,6 @@ fn the_variance_of_the_cumulative_version_is_below_its_bound_and_not_far() {
 
 #[test]
 fn a_value_that_is_none_ends_the_series_and_shows() {
-    struct Broken(f64);
-    impl Extinction for Broken {
-        fn sigma_t(&self, _: f64) -> f64 {
-            self.0
-        }
-        fn length(&self) -> f64 {
-            3.0
-        }
-    }
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let estimate = PSeries::new(Cumulative, 1.0).unwrap().estimate(&Broken(value), &mut Seeded::new(1));
         assert!(estimate.is_nan(), "{value}: {estimate}");

@@ -1,8 +1,9 @@
-//! What the tests of several estimators share.
+//! Profiles and judgements that the tests of several estimators share.
 
 use crate::{ClosedForm, Theory, TransmittanceEstimator};
 use fairflight_media::{
-    AnalyticCosine, Breakpoints, Counted, OpticalThickness, PiecewiseLinear, Ray, RayQuadrature, Tolerance,
+    AnalyticCosine, Breakpoints, Counted, Extinction, OpticalThickness, PiecewiseLinear, Ray, RayQuadrature,
+    Tolerance,
 };
 use fairflight_sources::Seeded;
 use glam::DVec3;
@@ -11,6 +12,18 @@ use glam::DVec3;
 pub(crate) fn seed_ray() -> Ray<AnalyticCosine> {
     let clip = AnalyticCosine::default_bounds().clip(DVec3::ZERO, DVec3::Z, None).unwrap().unwrap();
     Ray::new(AnalyticCosine::new(1.0).unwrap(), &clip)
+}
+
+/// A medium whose look-ups all give the same value, a number or none; of length 3.
+pub(crate) struct Broken(pub(crate) f64);
+
+impl Extinction for Broken {
+    fn sigma_t(&self, _: f64) -> f64 {
+        self.0
+    }
+    fn length(&self) -> f64 {
+        3.0
+    }
 }
 
 /// The theory of an estimator on a profile.

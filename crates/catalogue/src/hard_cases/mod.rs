@@ -97,14 +97,13 @@ pub struct HardCase {
 }
 
 impl HardCase {
-    /// A deterministic case.
-    fn deterministic(
+    /// A case without samples, to the tolerance of values that `function` compares.
+    fn new(
         number: u32,
         title: impl Into<String>,
         estimator: &'static str,
-        exact: impl Into<String>,
-        tolerance: &'static str,
-        function: impl Fn() -> Outcome + Send + Sync + 'static,
+        (exact, tolerance): (impl Into<String>, &'static str),
+        function: impl Fn(Run) -> Outcome + Send + Sync + 'static,
     ) -> Self {
         Self {
             number,
@@ -116,8 +115,20 @@ impl HardCase {
             of_table: false,
             refusal: false,
             samples: 0,
-            function: Box::new(move |_| function()),
+            function: Box::new(function),
         }
+    }
+
+    /// A deterministic case.
+    fn deterministic(
+        number: u32,
+        title: impl Into<String>,
+        estimator: &'static str,
+        exact: impl Into<String>,
+        tolerance: &'static str,
+        function: impl Fn() -> Outcome + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(number, title, estimator, (exact, tolerance), move |_| function())
     }
 
     /// A case judged over `samples` estimates.
@@ -129,18 +140,8 @@ impl HardCase {
         samples: u64,
         function: impl Fn(Run) -> Outcome + Send + Sync + 'static,
     ) -> Self {
-        Self {
-            number,
-            title: title.into(),
-            estimator,
-            kinds: Vec::new(),
-            exact: exact.into(),
-            tolerance: "the law, at its share of the false alarm",
-            of_table: false,
-            refusal: false,
-            samples,
-            function: Box::new(function),
-        }
+        let tolerance = "the law, at its share of the false alarm";
+        Self { samples, ..Self::new(number, title, estimator, (exact, tolerance), function) }
     }
 
     /// The same, which draws from these kinds.
