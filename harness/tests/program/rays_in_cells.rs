@@ -21,8 +21,13 @@ struct Cloud {
 }
 
 fn cloud() -> Cloud {
+    scaled_cloud(1.0)
+}
+
+/// The same voxels times a factor.
+fn scaled_cloud(scale: f64) -> Cloud {
     let media = MediumLibrary::default();
-    let json = json!({ "kind": "vdb", "file": fixture("eq21_64.vdb") });
+    let json = json!({ "kind": "vdb", "file": fixture("eq21_64.vdb"), "scale": scale });
     let spec = MediumSpec::read(&Node::root(&json)).unwrap();
     let (medium, bounds) = spec.kind().build(&media, "medium").unwrap();
     let AnyMedium::Voxels(medium) = medium else { panic!("no voxels") };
@@ -97,6 +102,39 @@ fn shadow_rays_through_the_boxes_of_voxels_are_unbiased() {
         }
     }
     assert_eq!(unlawful.get(), None);
+}
+
+/// The wrong twins of the law above: bounds of another medium, which some look-up leaves, and its transmittance, which the same
+/// number of estimates rejects.
+#[test]
+fn bounds_and_transmittance_of_another_medium_are_noticed() {
+    let (cloud, denser) = (cloud(), scaled_cloud(1.1));
+    for estimator in estimators() {
+        let (shadow, unlawful) = (cloud.shadow(&estimator), Cell::<Option<Unlawful>>::new(None));
+        let mut rejected = 0;
+        for clip in &cloud.rays() {
+            let (ray, other) = (Ray::new(&*cloud.medium, clip), Ray::new(&*denser.medium, clip));
+            let (mut worker, mut source) = (shadow.worker(&unlawful), Seeded::new(0));
+            let mut moments = Moments::default();
+            (0..4000).for_each(|_| moments.push(worker.estimate(&ray, &mut source)));
+            assert_eq!(unlawful.get(), None, "{estimator}");
+            let wrong = (-other.optical_thickness(0.0, clip.length)).exp();
+            let z = (moments.mean().unwrap() - wrong) / moments.standard_error().unwrap();
+            rejected += usize::from(z.abs() > 4.9);
+        }
+        assert!(rejected > 0, "{estimator}: no ray tells the two media apart");
+        for clip in &cloud.rays() {
+            let (mut worker, mut source) = (shadow.worker(&unlawful), Seeded::new(0));
+            let ray = Ray::new(&*denser.medium, clip);
+            (0..200).for_each(|_| {
+                worker.estimate(&ray, &mut source);
+            });
+        }
+        assert!(
+            unlawful.get().is_some(),
+            "{estimator}: the bounds of the thinner medium hold of the denser one"
+        );
+    }
 }
 
 #[test]
