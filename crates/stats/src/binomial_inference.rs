@@ -1,6 +1,7 @@
 //! Exact inference on a success probability: the two-sided test, the Clopper-Pearson interval, the power.
 
 use crate::binomial::Binomial;
+use crate::halving::{halved, halved_whole};
 use crate::normal::{two_sided_quantile, upper_quantile};
 
 impl Binomial {
@@ -34,16 +35,7 @@ impl Binomial {
 
     /// Smallest k with P(X >= k) <= side; N + 1 if there is none below.
     fn first_rejected_above(&self, side: f64) -> u64 {
-        let (mut kept, mut rejected) = (0, self.trials() + 1);
-        while rejected - kept > 1 {
-            let middle = kept + (rejected - kept) / 2;
-            if self.upper_tail(middle) <= side {
-                rejected = middle;
-            } else {
-                kept = middle;
-            }
-        }
-        rejected
+        halved_whole((0, self.trials() + 1), |k| self.upper_tail(k) <= side).1
     }
 
     /// Greatest k with P(X <= k) <= side, if there is one.
@@ -51,16 +43,7 @@ impl Binomial {
         if self.lower_tail(0) > side {
             return None;
         }
-        let (mut rejected, mut kept) = (0, self.trials());
-        while kept - rejected > 1 {
-            let middle = rejected + (kept - rejected) / 2;
-            if self.lower_tail(middle) <= side {
-                rejected = middle;
-            } else {
-                kept = middle;
-            }
-        }
-        Some(rejected)
+        Some(halved_whole((0, self.trials()), |k| self.lower_tail(k) > side).0)
     }
 }
 
@@ -94,15 +77,7 @@ pub fn trials_needed(p: f64, level: f64, power: f64, deviation: f64) -> f64 {
     while low >= 1.0 && enough(low) {
         (low, high) = (0.5 * low, low);
     }
-    while high - low > 0.01 * high && high - low > 1.0 {
-        let middle = 0.5 * (low + high);
-        if enough(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high.ceil()
+    halved((low, high), |high| (0.01 * high).max(1.0), enough).1.ceil()
 }
 
 /// The exact interval of Clopper and Pearson (1934) for the success probability after k successes in n trials: it

@@ -9,7 +9,8 @@
 //! At a level of 1e-10 that is 2,030 for two cells and 17,200 for twenty.
 
 use crate::goodness::GoodnessOfFit;
-use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
+use crate::halving::quantile;
+use crate::policy::POWER;
 use statrs::function::gamma::gamma_ur;
 
 /// How much larger the tail of the statistic may be than that of its limit.
@@ -40,19 +41,7 @@ pub fn chi_square_upper_tail(degrees_of_freedom: usize, x: f64) -> f64 {
 
 /// The x with P(chi-square > x) = `tail`, from above to a relative 1e-12.
 fn upper_quantile(degrees_of_freedom: usize, tail: f64) -> f64 {
-    let (mut low, mut high) = (0.0, degrees_of_freedom as f64);
-    while chi_square_upper_tail(degrees_of_freedom, high) > tail {
-        (low, high) = (high, 2.0 * high);
-    }
-    while high - low > 1e-12 * high {
-        let middle = 0.5 * (low + high);
-        if chi_square_upper_tail(degrees_of_freedom, middle) > tail {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
+    quantile(degrees_of_freedom as f64, |x| chi_square_upper_tail(degrees_of_freedom, x) <= tail)
 }
 
 /// Tests `counts` of independent samples against the exact `probabilities` of their cells, with a false alarm of at most
@@ -94,21 +83,12 @@ pub fn chi_square(counts: &[u64], probabilities: &[f64], alpha: f64) -> Goodness
     let p_value = (SAFETY * chi_square_upper_tail(degrees, statistic)).min(1.0);
     let scarcest = pooled.iter().map(|&(_, m)| m / n).fold(1.0, f64::min);
     let detectable = (detectable_noncentrality(degrees, critical) * (1.0 - scarcest) / (n * scarcest)).sqrt();
-    let sound = match (p_value > alpha, detectable < MAX_DETECTABLE_RELATIVE_BIAS) {
-        (false, _) => Some(false),
-        (true, true) => Some(true),
-        (true, false) => None,
-    };
-    let without_power = if sound.is_none() { "not testable, without power: " } else { "" };
-    GoodnessOfFit {
-        sound,
+    GoodnessOfFit::decided(
         statistic,
-        p_value_bound: Some(p_value),
-        detectable: Some(detectable),
-        reason: format!(
-            "{without_power}chi-square = {statistic:.1}, {degrees} degrees of freedom, p = {p_value:.1e}"
-        ),
-    }
+        (p_value, alpha),
+        detectable,
+        &format!("chi-square = {statistic:.1}, {degrees} degrees of freedom, p = {p_value:.1e}"),
+    )
 }
 
 /// The finest pooling of neighbours in which every cell is expected often enough for the number of cells, with the critical

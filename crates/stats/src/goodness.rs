@@ -1,5 +1,7 @@
 //! The outcome of testing drawn samples against a whole distribution.
 
+use crate::policy::MAX_DETECTABLE_RELATIVE_BIAS;
+
 /// What a test of goodness of fit says, with the numbers that led to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoodnessOfFit {
@@ -20,6 +22,29 @@ impl GoodnessOfFit {
     pub(crate) fn not_testable(reason: impl Into<String>) -> Self {
         let reason = format!("not testable: {}", reason.into());
         Self { sound: None, statistic: 0.0, p_value_bound: None, detectable: None, reason }
+    }
+
+    /// The outcome of a test whose p-value is held against the false alarm `alpha`. Agreement
+    /// says nothing where `detectable`, the deviation rejected with probability 0.99, is too great.
+    pub(crate) fn decided(
+        statistic: f64,
+        (p_value, alpha): (f64, f64),
+        detectable: f64,
+        reason: &str,
+    ) -> Self {
+        let sound = match (p_value > alpha, detectable < MAX_DETECTABLE_RELATIVE_BIAS) {
+            (false, _) => Some(false),
+            (true, true) => Some(true),
+            (true, false) => None,
+        };
+        let without_power = if sound.is_none() { "not testable, without power: " } else { "" };
+        Self {
+            sound,
+            statistic,
+            p_value_bound: Some(p_value),
+            detectable: Some(detectable),
+            reason: format!("{without_power}{reason}"),
+        }
     }
 
     /// Samples that the distribution excludes.

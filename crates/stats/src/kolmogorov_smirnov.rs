@@ -1,7 +1,7 @@
 //! Kolmogorov's test of samples against a continuous distribution function, with a bound that holds at every N.
 
 use crate::goodness::GoodnessOfFit;
-use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, POWER};
+use crate::policy::POWER;
 
 /// Tests independent `samples`, which it sorts, against the continuous distribution function `distribution`, with a false
 /// alarm of at most `alpha`.
@@ -39,19 +39,12 @@ pub fn kolmogorov_smirnov(
     let p_value = (2.0 * (-2.0 * n * distance * distance).exp()).min(1.0);
     let reach = |probability: f64| ((2.0 / probability).ln() / (2.0 * n)).sqrt();
     let detectable = reach(alpha) + reach(1.0 - POWER);
-    let sound = match (p_value > alpha, detectable < MAX_DETECTABLE_RELATIVE_BIAS) {
-        (false, _) => Some(false),
-        (true, true) => Some(true),
-        (true, false) => None,
-    };
-    let without_power = if sound.is_none() { "not testable, without power: " } else { "" };
-    GoodnessOfFit {
-        sound,
-        statistic: distance,
-        p_value_bound: Some(p_value),
-        detectable: Some(detectable),
-        reason: format!("{without_power}Kolmogorov distance {distance:.2e}, p < {p_value:.1e}"),
-    }
+    GoodnessOfFit::decided(
+        distance,
+        (p_value, alpha),
+        detectable,
+        &format!("Kolmogorov distance {distance:.2e}, p < {p_value:.1e}"),
+    )
 }
 
 #[cfg(test)]

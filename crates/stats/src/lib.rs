@@ -20,6 +20,7 @@
 //! ```
 
 mod evidence;
+mod halving;
 mod inequalities;
 mod judge;
 mod mean_test;

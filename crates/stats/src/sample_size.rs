@@ -3,6 +3,7 @@
 use crate::approximation::NormalApproximation;
 use crate::bernstein::Bernstein;
 use crate::binomial_inference::trials_needed;
+use crate::halving::halved;
 use crate::normal::upper_quantile;
 use crate::policy::POWER;
 use crate::reference::{Certainty, Reference, Scores};
@@ -92,16 +93,7 @@ pub(crate) fn least_sufficient(enough: impl Fn(f64) -> bool) -> f64 {
             return f64::INFINITY;
         }
     }
-    let mut low = 0.5 * high;
-    while high - low > 0.01 * high {
-        let middle = 0.5 * (low + high);
-        if enough(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high.ceil()
+    halved((0.5 * high, high), |high| 0.01 * high, enough).1.ceil()
 }
 
 #[cfg(test)]

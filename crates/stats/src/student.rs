@@ -1,5 +1,6 @@
 //! Quantiles of Student's law: how far a mean may be from the truth in standard errors that come from its own few values.
 
+use crate::halving::quantile;
 use statrs::function::beta::beta_reg;
 
 /// P(|T| > t) for t ≥ 0 and so many degrees of freedom: degrees/(degrees + T²) is a beta variate of degrees/2 and 1/2.
@@ -16,19 +17,7 @@ pub fn student_two_sided_quantile(probability: f64, degrees: u64) -> f64 {
     debug_assert!(probability > 0.0 && probability < 1.0, "a probability within (0, 1), found {probability}");
     debug_assert!(degrees > 0, "a variance has at least one degree of freedom");
     let degrees = degrees as f64;
-    let (mut low, mut high) = (0.0, 1.0);
-    while two_sided_tail(high, degrees) > probability {
-        (low, high) = (high, 2.0 * high);
-    }
-    while high - low > 1e-12 * high {
-        let middle = 0.5 * (low + high);
-        if two_sided_tail(middle, degrees) > probability {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
+    quantile(1.0, |t| two_sided_tail(t, degrees) <= probability)
 }
 
 #[cfg(test)]
