@@ -2,7 +2,7 @@
 
 use super::digits::{below, bits_53, within};
 use super::{PointSet, PointSetError};
-use crate::{Seeded, derive_seed};
+use crate::Seeded;
 
 /// The most coordinates: of bases beyond the 64th prime too many points are wanted for any order to show.
 pub(super) const DIMENSIONS: usize = 64;
@@ -95,12 +95,12 @@ impl PointSet for Halton {
     fn points(&self) -> u64 {
         POINTS
     }
+    fn seed(&self) -> u64 {
+        self.seed
+    }
     #[inline]
     fn coordinate(&self, index: u64, dimension: usize, filler: &mut Seeded) -> f64 {
         self.bases[dimension].coordinate(index, bits_53(filler))
-    }
-    fn filler(&self, index: u64) -> Seeded {
-        Seeded::new(derive_seed(self.seed, index))
     }
 }
 

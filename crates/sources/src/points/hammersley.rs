@@ -42,15 +42,15 @@ impl PointSet for Hammersley {
     fn points(&self) -> u64 {
         self.points
     }
+    fn seed(&self) -> u64 {
+        self.halton.seed()
+    }
     #[inline]
     fn coordinate(&self, index: u64, dimension: usize, filler: &mut Seeded) -> f64 {
         match dimension {
             0 => within((index + self.start) % self.points, self.points, bits_53(filler)),
             _ => self.halton.coordinate(index, dimension - 1, filler),
         }
-    }
-    fn filler(&self, index: u64) -> Seeded {
-        self.halton.filler(index)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::digits::{below, bits_53, within};
 use super::{PointSet, PointSetError};
-use crate::{Seeded, derive_seed};
+use crate::Seeded;
 
 /// N points; coordinate d of point i is (π_d(i) + jitter)/N with a random order π_d for each coordinate.
 ///
@@ -51,13 +51,13 @@ impl PointSet for LatinHypercube {
     fn points(&self) -> u64 {
         u64::from(self.points)
     }
+    fn seed(&self) -> u64 {
+        self.seed
+    }
     #[inline]
     fn coordinate(&self, index: u64, dimension: usize, filler: &mut Seeded) -> f64 {
         let stratum = self.orders[dimension * self.points as usize + index as usize];
         within(u64::from(stratum), u64::from(self.points), bits_53(filler))
-    }
-    fn filler(&self, index: u64) -> Seeded {
-        Seeded::new(derive_seed(self.seed, index))
     }
 }
 

@@ -32,7 +32,7 @@ pub use hammersley::Hammersley;
 pub use latin_hypercube::LatinHypercube;
 pub use sobol::Sobol;
 
-use crate::{Seeded, UniformSource};
+use crate::{Seeded, UniformSource, derive_seed};
 
 /// Why a point set cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,12 +97,17 @@ pub trait PointSet {
     /// How many points the set orders; the sources of points beyond are independent from the first variate on.
     fn points(&self) -> u64;
 
+    /// The seed of the replica.
+    fn seed(&self) -> u64;
+
     /// The coordinate `dimension` of the point `index`, both within bounds. What the set leaves open below its resolution is
     /// taken from `filler`, the stream of this point.
     fn coordinate(&self, index: u64, dimension: usize, filler: &mut Seeded) -> f64;
 
     /// The stream that is the point's own: what it fills up with.
-    fn filler(&self, index: u64) -> Seeded;
+    fn filler(&self, index: u64) -> Seeded {
+        Seeded::new(derive_seed(self.seed(), index))
+    }
 
     /// The point `index` as a source.
     fn source(&self, index: u64) -> PointSource<'_, Self>

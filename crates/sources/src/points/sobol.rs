@@ -2,7 +2,7 @@
 
 use super::digits::bits_53;
 use super::{PointSet, PointSetError};
-use crate::{Seeded, derive_seed};
+use crate::Seeded;
 use sobol_burley::NUM_DIMENSIONS;
 use sobol_burley::parts::{owen_scramble_rev, sobol_rev};
 
@@ -53,6 +53,9 @@ impl PointSet for Sobol {
     fn points(&self) -> u64 {
         POINTS
     }
+    fn seed(&self) -> u64 {
+        self.seed
+    }
     #[inline]
     fn coordinate(&self, index: u64, dimension: usize, filler: &mut Seeded) -> f64 {
         debug_assert!(index < POINTS, "the library repeats its points there");
@@ -62,9 +65,6 @@ impl PointSet for Sobol {
         let scrambled = owen_scramble_rev(digits, key).reverse_bits();
         let number = (u64::from(scrambled) << 21) | (bits_53(filler) >> 32);
         (number ^ shift) as f64 / (1_u64 << 53) as f64
-    }
-    fn filler(&self, index: u64) -> Seeded {
-        Seeded::new(derive_seed(self.seed, index))
     }
 }
 
