@@ -1,6 +1,6 @@
 //! Inversion of the optical thickness in closed form (szirmay-kalos-2017 eq. 3 and 4).
 
-use crate::theory::HIGHEST_MOMENT;
+use crate::theory::{HIGHEST_MOMENT, Moments};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{Extinction, InvertOpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -30,11 +30,7 @@ impl<F: InvertOpticalThickness> FreeFlight<F> for Inversion {
 }
 
 impl<F: Extinction> ClosedForm<F> for Inversion {
-    fn lookups(
-        &self,
-        _quadrature: &mut RayQuadrature<F>,
-        _tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, _quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<Moments> {
         Some([0.0; HIGHEST_MOMENT])
     }
 }

@@ -1,8 +1,8 @@
 //! Free flight with one candidate per stratum: the companion of jittered ratio tracking.
 
-use crate::theory::{HIGHEST_MOMENT, one_more, poisson_moments};
+use crate::theory::{HIGHEST_MOMENT, Moments, one_more, poisson_moments};
 use crate::{ClosedForm, Flight, FreeFlight};
-use fairflight_media::{Majorant, RayQuadrature, Tolerance};
+use fairflight_media::{Epsilon, EpsilonError, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// One uniform candidate x in each stratum \[a, a + h): accepted with the probability h σ_t(x), then put to a survival test, a
@@ -24,24 +24,7 @@ use fairflight_sources::UniformSource;
 /// **Source.** Ours; no publication of it was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JitteredFlight {
-    epsilon: f64,
-}
-
-/// Why strata cannot have this optical thickness.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum EpsilonError {
-    /// Infinitely many strata.
-    #[error("epsilon must be positive, found {found}")]
-    NotPositive {
-        /// The value given.
-        found: f64,
-    },
-    /// A candidate would have to be accepted with a probability above 1.
-    #[error("epsilon must not exceed 1, found {found}")]
-    AboveOne {
-        /// The value given.
-        found: f64,
-    },
+    epsilon: Epsilon,
 }
 
 impl JitteredFlight {
@@ -50,27 +33,20 @@ impl JitteredFlight {
     /// # Errors
     /// If `epsilon` is not in (0, 1\].
     pub fn new(epsilon: f64) -> Result<Self, EpsilonError> {
-        match epsilon {
-            found if found > 1.0 => Err(EpsilonError::AboveOne { found }),
-            found if found > 0.0 => Ok(Self { epsilon: found }),
-            found => Err(EpsilonError::NotPositive { found }),
-        }
+        Epsilon::new(epsilon).map(|epsilon| Self { epsilon })
     }
 
     /// The greatest optical thickness of a stratum in the majorant \[1\].
     #[must_use]
     pub fn epsilon(&self) -> f64 {
-        self.epsilon
+        self.epsilon.get()
     }
 
     /// The number of strata and the width of each; none where nothing can be met.
     #[inline]
     fn strata<F: Majorant>(&self, field: &F) -> (f64, f64) {
         let (length, thickness) = (field.length(), field.majorant() * field.length());
-        if thickness <= 0.0 {
-            return (0.0, length);
-        }
-        let count = (thickness / self.epsilon).ceil().max(1.0);
+        let count = self.epsilon.strata(thickness);
         (count, length / count)
     }
 }
@@ -123,11 +99,7 @@ impl<F: Majorant> ClosedForm<F> for JitteredFlight {
     ///
     /// > E\[L^i A\] = ∫ σ_t(x) T(a, x) E\[(1 + P)^i\] dx,
     /// > E\[L^i (1 − A)\] = 1 − τ(a, b) + ∫ σ_t(y) T(a, y) τ(y, b) E\[(2 + P)^i\] dy.
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<Moments> {
         let (count, width) = self.strata(quadrature.field());
         if count == 0.0 {
             return Some([0.0; HIGHEST_MOMENT]);
@@ -262,13 +234,5 @@ mod tests {
         // Five standard errors: a chance of 6e-7.
         let error = ((raw[1] - raw[0] * raw[0]) / f64::from(samples)).sqrt();
         assert!((mean - raw[0]).abs() < 5.0 * error, "{mean} {} ± {error}", raw[0]);
-    }
-
-    #[test]
-    fn an_epsilon_outside_its_interval_is_refused() {
-        for epsilon in [0.0, -1.0, f64::NAN] {
-            assert!(matches!(JitteredFlight::new(epsilon), Err(EpsilonError::NotPositive { .. })));
-        }
-        assert_eq!(JitteredFlight::new(1.5), Err(EpsilonError::AboveOne { found: 1.5 }));
     }
 }

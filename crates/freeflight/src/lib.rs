@@ -37,15 +37,19 @@ mod newton;
 mod regular;
 mod root;
 pub mod spectral;
+#[cfg(test)]
+mod test_support;
 mod theory;
 mod tracking;
+mod weight_law;
 mod woodcock;
 
 pub use flight::{Flight, FreeFlight};
 pub use inversion::Inversion;
-pub use jittered::{EpsilonError, JitteredFlight};
+pub use jittered::JitteredFlight;
 pub use newton::Newton;
 pub use regular::Regular;
-pub use theory::{ClosedForm, HIGHEST_MOMENT, lookups_of_a_walk};
+pub use theory::{ClosedForm, HIGHEST_MOMENT, Moments, lookups_of_a_walk};
 pub use tracking::Tracking;
+pub use weight_law::{WeightLaw, WeightProducts};
 pub use woodcock::Woodcock;

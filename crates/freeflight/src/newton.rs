@@ -1,7 +1,7 @@
 //! Numerical inversion of an optical thickness in closed form (szirmay-kalos-2017 eq. 4).
 
 use crate::root::crossing;
-use crate::theory::HIGHEST_MOMENT;
+use crate::theory::Moments;
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{Extinction, OpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -49,11 +49,7 @@ impl<F: OpticalThickness> FreeFlight<F> for Newton {
 }
 
 impl<F: Extinction> ClosedForm<F> for Newton {
-    fn lookups(
-        &self,
-        _quadrature: &mut RayQuadrature<F>,
-        _tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, _quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<Moments> {
         None
     }
 }

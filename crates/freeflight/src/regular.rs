@@ -1,7 +1,7 @@
 //! Regular tracking: from cell to cell, the optical thickness of each in closed form.
 
 use crate::root::crossing;
-use crate::theory::{HIGHEST_MOMENT, powers};
+use crate::theory::{HIGHEST_MOMENT, Moments, powers};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{Cells, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -116,11 +116,7 @@ impl<F: Cells> FreeFlight<F> for Regular {
 }
 
 impl<F: Cells> ClosedForm<F> for Regular {
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, _tolerance: Tolerance) -> Option<Moments> {
         let field = quadrature.field();
         let mut moments = [0.0; HIGHEST_MOMENT];
         let mut score = |number: f64, probability: f64| {

@@ -1,66 +1,30 @@
 //! What is known of a sampler before a flight is drawn.
 
+use crate::WeightLaw;
 use fairflight_media::{Extinction, Integral, RayQuadrature, Tolerance};
 
 /// The highest power of a score whose moment is computed: what the tests of a mean (4) and of a variance (8) want.
 pub const HIGHEST_MOMENT: usize = 8;
 
+/// E\[X^k\] for k = 1 … 8 (index k − 1).
+pub type Moments = [f64; HIGHEST_MOMENT];
+
 /// A sampler whose weights have a law in closed form, up to quadrature over the ray.
 pub trait ClosedForm<F: Extinction> {
-    /// E\[1{collided} (weight · score(distance))^k\] for k = 1 … 8 (index k − 1). With a score of 1, the moments of the
-    /// weight of a collision; the second is then what a wasteful sampler is known by.
-    ///
-    /// Where `score` jumps, the `quadrature` must have a border. (A trait object: nobody is in a hurry here, and the
-    /// quadrature is compiled once.)
-    ///
-    /// By default ∫ σ_t T score^k ds: that of a sampler whose weights are 1.
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        quadrature.integrate_nested(
-            tolerance,
-            |_, sigma_t| [sigma_t],
-            |s, sigma_t, [tau]| powers(score(s)).map(|power| sigma_t * (-tau).exp() * power),
-        )
+    /// The law of the weights. By default all are 1.
+    fn weights(&self) -> WeightLaw<'_, F> {
+        WeightLaw::One
     }
 
-    /// E\[1{escaped} weight^k\] for k = 1 … 8 (index k − 1).
-    ///
-    /// By default T(length), whatever the power: that of a sampler whose weights are 1.
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        let tau = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0];
-        [(-tau).exp(); HIGHEST_MOMENT]
-    }
-
-    /// E\[N^k\] of the number N of look-ups of one flight, for k = 1 … 8 (index k − 1): the first is the expected cost.
-    /// `None` where no closed form is known.
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]>;
+    /// E\[N^k\] of the number N of look-ups of one flight: the first is the expected cost. `None` where no closed form is known.
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<Moments>;
 }
 
 impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        (**self).collided(quadrature, tolerance, score)
+    fn weights(&self) -> WeightLaw<'_, F> {
+        (**self).weights()
     }
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        (**self).escaped(quadrature, tolerance)
-    }
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<Moments> {
         (**self).lookups(quadrature, tolerance)
     }
 }
@@ -75,7 +39,7 @@ pub fn lookups_of_a_walk<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
     rates: &dyn Fn(f64, f64) -> [f64; 2],
-) -> [f64; HIGHEST_MOMENT] {
+) -> Moments {
     lookups_of_a_race(quadrature, tolerance, &|s, sigma_t| {
         let [ending, passing] = rates(s, sigma_t);
         [0.0, ending, passing]
@@ -88,7 +52,7 @@ pub(crate) fn lookups_of_a_race<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
     rates: &dyn Fn(f64, f64) -> [f64; 3],
-) -> [f64; HIGHEST_MOMENT] {
+) -> Moments {
     let ending_and_passing = |s: f64, sigma_t: f64| {
         let [unseen, ending, passing] = rates(s, sigma_t);
         [unseen + ending, passing]
@@ -107,7 +71,7 @@ pub(crate) fn lookups_of_a_race<F: Extinction>(
 
 /// E\[P^k\] and E\[(1 + P)^k\], k = 1 … 8, of a Poisson variate P of this mean: the second by the binomial theorem, and
 /// E\[P^(k+1)\] = mean · E\[(1 + P)^k\].
-pub(crate) fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHEST_MOMENT]) {
+pub(crate) fn poisson_moments(mean: f64) -> (Moments, Moments) {
     let mut raw = [0.0; HIGHEST_MOMENT];
     let mut next = [0.0; HIGHEST_MOMENT];
     raw[0] = mean;
@@ -121,12 +85,12 @@ pub(crate) fn poisson_moments(mean: f64) -> ([f64; HIGHEST_MOMENT], [f64; HIGHES
 }
 
 /// E\[(1 + X)^k\], k = 1 … 8, from E\[X^k\].
-pub(crate) fn one_more(raw: &[f64; HIGHEST_MOMENT]) -> [f64; HIGHEST_MOMENT] {
+pub(crate) fn one_more(raw: &Moments) -> Moments {
     std::array::from_fn(|i| one_more_to(i + 1, raw))
 }
 
 /// E\[(1 + X)^k\], by the binomial theorem.
-fn one_more_to(k: usize, raw: &[f64; HIGHEST_MOMENT]) -> f64 {
+fn one_more_to(k: usize, raw: &Moments) -> f64 {
     let (mut sum, mut binomial) = (1.0, 1.0);
     for j in 1..=k {
         binomial *= (k - j + 1) as f64 / j as f64;
@@ -148,7 +112,7 @@ pub(crate) fn times_exp(factor: f64, exponent: f64, score: f64) -> f64 {
 }
 
 /// x, x², …, x⁸.
-pub(crate) fn powers(x: f64) -> [f64; HIGHEST_MOMENT] {
+pub(crate) fn powers(x: f64) -> Moments {
     let mut power = 1.0;
     std::array::from_fn(|_| {
         power *= x;

@@ -1,12 +1,13 @@
 //! Free flights with an arbitrary sampling extinction: the single particle model up to its first scattering
 //! (szirmay-kalos-2017 eq. 9 and 12).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk, powers, times_exp};
-use crate::{ClosedForm, Flight, FreeFlight};
+use crate::theory::{HIGHEST_MOMENT, Moments, lookups_of_a_walk};
+use crate::weight_law::Along;
+use crate::{ClosedForm, Flight, FreeFlight, WeightLaw};
 use fairflight_collision::{
     Albedo, AlbedoError, CollisionModel, Outcome, SingleOutcome, SingleParticle, Version,
 };
-use fairflight_media::{Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance};
+use fairflight_media::{Extinction, InvertOpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// Flies through σ_samp; at each interaction point the single particle model either scatters, and the flight has
@@ -79,19 +80,18 @@ impl<R: InvertOpticalThickness> Tracking<R> {
     }
 
     /// d ln M_k/ds for k = 1 … 8.
-    fn growth(&self, s: f64, sigma_t: f64) -> [f64; HIGHEST_MOMENT] {
+    fn growth(&self, s: f64, sigma_t: f64) -> Moments {
         let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; HIGHEST_MOMENT] };
         let transmitted = self.model.transmitted(r);
         std::array::from_fn(|i| sampling * (transmitted.moment(i as i32 + 1) - 1.0))
     }
 
-    /// Splits the ray where the moments of a collision are not smooth in r.
-    fn split_at_kinks<F: Extinction>(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) {
-        for kink in self.model.kinks() {
-            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
-                self.at(s, sigma_t).map_or(1.0, |(_, ratio)| ratio - kink)
-            });
-        }
+    /// Where the moments of a collision are not smooth in r.
+    fn kinks<F>(&self) -> Vec<Along<'_, F, f64>> {
+        let distance = |kink: f64| -> Along<'_, F, f64> {
+            Box::new(move |_, s, sigma_t| self.at(s, sigma_t).map_or(1.0, |(_, r)| r - kink))
+        };
+        self.model.kinks().into_iter().map(distance).collect()
     }
 }
 
@@ -125,38 +125,23 @@ impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Tracking<R> {
     }
 }
 
-impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        self.split_at_kinks(quadrature, tolerance);
-        quadrature.integrate_nested(
-            tolerance,
-            |s, sigma_t| self.growth(s, sigma_t),
-            |s, sigma_t, growth| {
-                let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; HIGHEST_MOMENT] };
-                let (scattered, scores) = (self.model.scattered(r), powers(score(s)));
-                std::array::from_fn(|i| {
-                    times_exp(sampling * scattered.moment(i as i32 + 1), growth[i], scores[i])
-                })
+impl<F: Extinction + Clone, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
+    fn weights(&self) -> WeightLaw<'_, F> {
+        WeightLaw::products(
+            self.kinks(),
+            |_, s, sigma_t| self.growth(s, sigma_t),
+            |_, s, sigma_t| match self.at(s, sigma_t) {
+                Some((sampling, r)) => {
+                    let scattered = self.model.scattered(r);
+                    std::array::from_fn(|i| sampling * scattered.moment(i as i32 + 1))
+                }
+                None => [0.0; HIGHEST_MOMENT],
             },
         )
     }
 
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        self.split_at_kinks(quadrature, tolerance);
-        quadrature.integrate(tolerance, |s, sigma_t| self.growth(s, sigma_t)).value.map(f64::exp)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        self.split_at_kinks(quadrature, tolerance);
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<Moments> {
+        self.weights().split_at_kinks(quadrature, tolerance);
         Some(lookups_of_a_walk(quadrature, tolerance, &|s, sigma_t| {
             let Some((sampling, r)) = self.at(s, sigma_t) else { return [0.0; 2] };
             [self.model.scattered(r).probability, self.model.transmitted(r).probability].map(|q| sampling * q)
@@ -167,15 +152,10 @@ impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Tracking<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::{VERSIONS, constant};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseConstant};
+    use fairflight_media::PiecewiseConstant;
     use fairflight_sources::{LARGEST_VARIATE, Scripted};
-
-    const VERSIONS: [Version; 3] = [Version::Terminating, Version::NonTerminating, Version::Adaptive];
-
-    fn constant(sigma: f64) -> Constant {
-        Constant::new(sigma, 1.0).unwrap()
-    }
 
     #[test]
     fn nothing_is_absorbed_at_albedo_one() {
@@ -232,10 +212,10 @@ mod tests {
                 |_, sigma_t| [sigma_t],
                 |s, sigma_t, [tau]| [sigma_t * (-tau).exp() * score(s), (-tau).exp()],
             );
-            let found = tracking.collided(&mut quadrature, Tolerance::TIGHT, &score).value;
+            let found = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &score).value;
             assert_relative_eq!(found[0], law.value[0], max_relative = 1e-11);
             let tau = 0.3 * values[0] + 0.7 * values[1];
-            let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT);
+            let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT);
             assert_relative_eq!(escaped[0], (-tau).exp(), max_relative = 1e-12);
         }
     }
@@ -245,9 +225,9 @@ mod tests {
         // sigma_t 1, sigma_samp 0.5, r = 2: E[W_tran²] = 3, E[W_scat²] = 6; M_2 = e^s.
         let mut quadrature = RayQuadrature::new(constant(1.0), &[]);
         let tracking = Tracking::new(Version::NonTerminating, constant(0.5));
-        let collided = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1];
+        let collided = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1];
         assert_relative_eq!(collided, 3.0 * 1.0_f64.exp_m1(), max_relative = 1e-12);
-        let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT)[1];
+        let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[1];
         assert_relative_eq!(escaped, 1.0_f64.exp(), max_relative = 1e-12);
         // Two thirds of the collisions end the flight: 0.5 ∫ exp(−s/3).
         let lookups = tracking.lookups(&mut quadrature, Tolerance::TIGHT).unwrap();
@@ -280,8 +260,8 @@ mod tests {
             let tracking = Tracking::new(version, constant(0.37));
             let moments = |told: &[f64]| {
                 let mut quadrature = RayQuadrature::new(&field, told);
-                let collided = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value;
-                (collided, tracking.escaped(&mut quadrature, Tolerance::TIGHT))
+                let collided = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value;
+                (collided, tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT))
             };
             let (found, told) = (moments(&[]), moments(&[0.37]));
             for k in 0..4 {

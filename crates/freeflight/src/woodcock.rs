@@ -1,6 +1,6 @@
 //! Woodcock tracking: tentative flights through a majorant (raab-2008 algorithm 1, woodcock-1965).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk};
+use crate::theory::{Moments, lookups_of_a_walk};
 use crate::{ClosedForm, Flight, FreeFlight};
 use fairflight_media::{Extinction, InvertOpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -61,11 +61,7 @@ impl<F: Extinction, R: InvertOpticalThickness> FreeFlight<F> for Woodcock<R> {
 }
 
 impl<F: Extinction, R: InvertOpticalThickness> ClosedForm<F> for Woodcock<R> {
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<Moments> {
         let rates = |s: f64, sigma_t: f64| [sigma_t, self.majorant.sigma_t(s) - sigma_t];
         Some(lookups_of_a_walk(quadrature, tolerance, &rates))
     }

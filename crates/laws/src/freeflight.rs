@@ -61,7 +61,7 @@ impl FlightExpectation {
     /// By quadrature: the means from the law itself, the other moments from the closed form of `sampler`.
     ///
     /// The `quadrature` has a border wherever σ_t or anything that the sampler knows is not smooth.
-    pub fn new<F: Extinction, E: ClosedForm<F>>(
+    pub fn new<F: Extinction + Clone, E: ClosedForm<F>>(
         quadrature: &mut RayQuadrature<F>,
         sampler: &E,
         weights: Weights,
@@ -70,10 +70,10 @@ impl FlightExpectation {
         let length = quadrature.field().length();
         // Where the indicator jumps.
         quadrature.split_at(&[0.5 * length]);
-        let means = law(quadrature, tolerance);
+        let (means, weight_law) = (law(quadrature, tolerance), sampler.weights());
         let collided = std::array::from_fn(|i| {
             let (name, function) = TEST_FUNCTIONS[i];
-            let moments = sampler.collided(quadrature, tolerance, &|s| function(s / length)).value;
+            let moments = weight_law.collided(quadrature, tolerance, &|s| function(s / length)).value;
             Reference {
                 error: means.error[i],
                 moments: Some(ClosedMoments::from_raw(&moments)),
@@ -85,7 +85,7 @@ impl FlightExpectation {
         let transmittance = (-tau.value[0]).exp();
         let escaped = Reference {
             error: transmittance * tau.error[0].exp_m1(),
-            moments: Some(ClosedMoments::from_raw(&sampler.escaped(quadrature, tolerance))),
+            moments: Some(ClosedMoments::from_raw(&weight_law.escaped(quadrature, tolerance))),
             scores: scores(weights, true),
             ..Reference::exact(transmittance)
         };

@@ -1,5 +1,6 @@
 //! Fields with an upper and a lower bound in each of many cells: what tracking with local bounds walks on.
 
+use crate::of_field::of_field;
 use crate::{
     Breakpoints, Counted, Domain, Extinction, FieldError, Majorant, Minorant, OpticalThickness, Watched,
 };
@@ -102,16 +103,7 @@ impl<F: Extinction, C: AsRef<[BoundCell]>> InCells<F, C> {
     }
 }
 
-impl<F: Extinction, C> Extinction for InCells<F, C> {
-    #[inline]
-    fn sigma_t(&self, s: f64) -> f64 {
-        self.field.sigma_t(s)
-    }
-    #[inline]
-    fn length(&self) -> f64 {
-        self.field.length()
-    }
-}
+of_field!(Extinction, [F: Extinction, C] InCells<F, C>);
 
 impl<F: Extinction, C: AsRef<[BoundCell]>> BoundedInCells for InCells<F, C> {
     #[inline]
@@ -136,18 +128,8 @@ impl<F: Extinction, C> Minorant for InCells<F, C> {
     }
 }
 
-impl<F: OpticalThickness, C> OpticalThickness for InCells<F, C> {
-    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
-        self.field.optical_thickness(from, to)
-    }
-}
-
-/// Those of the field: a border between two cells is none.
-impl<F: Breakpoints, C> Breakpoints for InCells<F, C> {
-    fn breakpoints(&self) -> Vec<f64> {
-        self.field.breakpoints()
-    }
-}
+of_field!(OpticalThickness, [F: OpticalThickness, C] InCells<F, C>);
+of_field!(Breakpoints, [F: Breakpoints, C] InCells<F, C>);
 
 impl<F: BoundedInCells + ?Sized> BoundedInCells for &F {
     #[inline]

@@ -1,5 +1,6 @@
 //! A majorant that somebody claims for a field that knows none, or knows a looser one.
 
+use crate::of_field::of_field;
 use crate::{Breakpoints, Extinction, FieldError, Majorant, OpticalThickness};
 
 /// A field together with a claimed majorant.
@@ -29,16 +30,7 @@ impl<F: Extinction> Bounded<F> {
     }
 }
 
-impl<F: Extinction> Extinction for Bounded<F> {
-    #[inline]
-    fn sigma_t(&self, s: f64) -> f64 {
-        self.field.sigma_t(s)
-    }
-    #[inline]
-    fn length(&self) -> f64 {
-        self.field.length()
-    }
-}
+of_field!(Extinction, [F: Extinction] Bounded<F>);
 
 impl<F: Extinction> Majorant for Bounded<F> {
     #[inline]
@@ -47,14 +39,5 @@ impl<F: Extinction> Majorant for Bounded<F> {
     }
 }
 
-impl<F: OpticalThickness> OpticalThickness for Bounded<F> {
-    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
-        self.field.optical_thickness(from, to)
-    }
-}
-
-impl<F: Breakpoints> Breakpoints for Bounded<F> {
-    fn breakpoints(&self) -> Vec<f64> {
-        self.field.breakpoints()
-    }
-}
+of_field!(OpticalThickness, [F: OpticalThickness] Bounded<F>);
+of_field!(Breakpoints, [F: Breakpoints] Bounded<F>);

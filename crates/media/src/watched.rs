@@ -2,6 +2,7 @@
 //!
 //! They are separate from the fields, so that a run without them pays nothing.
 
+use crate::of_field::of_field;
 use crate::{Extinction, InvertOpticalThickness, Majorant, OpticalThickness};
 use std::cell::Cell;
 
@@ -41,27 +42,9 @@ impl<F: Extinction> Extinction for Counted<F> {
     }
 }
 
-impl<F: Majorant> Majorant for Counted<F> {
-    #[inline]
-    fn majorant(&self) -> f64 {
-        self.field.majorant()
-    }
-}
-
-/// A closed form is no look-up.
-impl<F: OpticalThickness> OpticalThickness for Counted<F> {
-    #[inline]
-    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
-        self.field.optical_thickness(from, to)
-    }
-}
-
-impl<F: InvertOpticalThickness> InvertOpticalThickness for Counted<F> {
-    #[inline]
-    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
-        self.field.invert(from, depth)
-    }
-}
+of_field!(Majorant, [F: Majorant] Counted<F>);
+of_field!(OpticalThickness, [F: OpticalThickness] Counted<F>);
+of_field!(InvertOpticalThickness, [F: InvertOpticalThickness] Counted<F>);
 
 /// The values of σ_t that an estimator is an estimator for.
 pub trait Domain {
@@ -136,27 +119,9 @@ impl<F: Extinction, D: Domain> Extinction for Watched<F, D> {
     }
 }
 
-impl<F: Majorant, D: Domain> Majorant for Watched<F, D> {
-    #[inline]
-    fn majorant(&self) -> f64 {
-        self.field.majorant()
-    }
-}
-
-/// A closed form is no look-up.
-impl<F: OpticalThickness, D: Domain> OpticalThickness for Watched<F, D> {
-    #[inline]
-    fn optical_thickness(&self, from: f64, to: f64) -> f64 {
-        self.field.optical_thickness(from, to)
-    }
-}
-
-impl<F: InvertOpticalThickness, D: Domain> InvertOpticalThickness for Watched<F, D> {
-    #[inline]
-    fn invert(&self, from: f64, depth: f64) -> Option<f64> {
-        self.field.invert(from, depth)
-    }
-}
+of_field!(Majorant, [F: Majorant, D: Domain] Watched<F, D>);
+of_field!(OpticalThickness, [F: OpticalThickness, D: Domain] Watched<F, D>);
+of_field!(InvertOpticalThickness, [F: InvertOpticalThickness, D: Domain] Watched<F, D>);
 
 #[cfg(test)]
 mod tests {

@@ -76,12 +76,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for Unidirectional {
 }
 
 impl<F: Majorant> ClosedForm<F> for Unidirectional {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let (majorant, length) = (quadrature.field().majorant(), quadrature.field().length());
         if majorant <= 0.0 {
             return of_variance(0.0, 0.0, 0.0, 0.0);
@@ -89,8 +84,8 @@ impl<F: Majorant> ClosedForm<F> for Unidirectional {
         let grown = quadrature.cumulative(tolerance, |_, sigma_t| [sigma_t, sigma_t * sigma_t / majorant]);
         let b = |x: f64| 1.0 / (1.0 + (majorant * (length - x)).exp());
         // In units of exp(A(S)), and the exponents of p_k in those of their end.
-        let [tau, total] = grown.at(length);
-        let end = majorant * length - 2.0 * tau;
+        let [thickness, total] = grown.at(length);
+        let end = majorant * length - 2.0 * thickness;
         let variance = quadrature.integrate_nested(
             tolerance,
             |x, sigma_t| {
@@ -101,7 +96,7 @@ impl<F: Majorant> ClosedForm<F> for Unidirectional {
             },
             |y, sigma_t, inner| {
                 let [before, a] = grown.at(y);
-                let straight = (optical_thickness - before - majorant * (length - y)).exp();
+                let straight = (tau - before - majorant * (length - y)).exp();
                 let h = straight - sigma_t / majorant;
                 let square = (a - total).exp() * h * h;
                 let scale = (end - (majorant * y - 2.0 * before)).exp();

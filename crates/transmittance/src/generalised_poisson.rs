@@ -82,12 +82,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for GeneralisedPoisson {
 }
 
 impl<F: Extinction> ClosedForm<F> for GeneralisedPoisson {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         let Self { pivot, rate } = *self;
         let length = quadrature.field().length();
         if length == 0.0 {

@@ -17,7 +17,7 @@
 use crate::factors::{BINOMIALS, FactorLaw, compound, powers};
 use crate::jittered_ratio::Strata;
 use crate::{HIGHEST_MOMENT, MOMENTS, Theory};
-use fairflight_media::{BoundCell, Extinction, RayQuadrature, Tolerance};
+use fairflight_media::{BoundCell, Epsilon, Extinction, RayQuadrature, Tolerance};
 
 /// A stratum, or a cell without any (of the optical thickness 0).
 struct Part {
@@ -30,7 +30,7 @@ struct Part {
 /// The law of the product over the strata of all `cells`, which cover the profile.
 pub(crate) fn theory_of<F: Extinction>(
     cells: &[BoundCell],
-    epsilon: f64,
+    epsilon: Epsilon,
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
 ) -> Theory {
@@ -68,7 +68,7 @@ pub(crate) fn theory_of<F: Extinction>(
 }
 
 /// The strata of all cells, a cell without any as itself; and where each ends.
-fn parts_of(cells: &[BoundCell], epsilon: f64) -> (Vec<Part>, Vec<f64>) {
+fn parts_of(cells: &[BoundCell], epsilon: Epsilon) -> (Vec<Part>, Vec<f64>) {
     let (mut parts, mut ends, mut from) = (Vec::new(), Vec::new(), 0.0);
     for cell in cells {
         let strata = Strata::of(cell, from, epsilon);

@@ -2,7 +2,9 @@
 
 use crate::jittered_law::theory_of;
 use crate::{ClosedForm, SignedProduct, Theory, TransmittanceEstimator};
-use fairflight_media::{BoundCell, BoundedInCells, Extinction, Majorant, RayQuadrature, Tolerance};
+use fairflight_media::{
+    BoundCell, BoundedInCells, Epsilon, EpsilonError, Extinction, Majorant, RayQuadrature, Tolerance,
+};
 use fairflight_sources::UniformSource;
 
 /// Ratio tracking on strata of the optical thickness ε in the majorant, with one point in each, rarely more.
@@ -26,7 +28,7 @@ use fairflight_sources::UniformSource;
 /// **Source.** Ours; no publication of it was found. Block-Poisson estimators (quiroz-2021) are the nearest relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JitteredRatio {
-    epsilon: f64,
+    epsilon: Epsilon,
 }
 
 /// [`JitteredRatio`] between the bounds of each cell: the minorant is the control, and a cell is cut into
@@ -39,32 +41,7 @@ pub struct JitteredRatio {
 /// a waste here, as they are not for [`crate::ResidualCells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JitteredRatioInCells {
-    epsilon: f64,
-}
-
-/// Why strata cannot have this optical thickness.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum EpsilonError {
-    /// Infinitely many strata.
-    #[error("epsilon must be positive, found {found}")]
-    NotPositive {
-        /// The value given.
-        found: f64,
-    },
-    /// Estimates would leave \[0, 1\].
-    #[error("epsilon must not exceed 1, found {found}")]
-    AboveOne {
-        /// The value given.
-        found: f64,
-    },
-}
-
-fn checked(epsilon: f64) -> Result<f64, EpsilonError> {
-    match epsilon {
-        found if found > 1.0 => Err(EpsilonError::AboveOne { found }),
-        found if found > 0.0 => Ok(found),
-        found => Err(EpsilonError::NotPositive { found }),
-    }
+    epsilon: Epsilon,
 }
 
 impl JitteredRatio {
@@ -73,13 +50,13 @@ impl JitteredRatio {
     /// # Errors
     /// If `epsilon` is not in (0, 1\].
     pub fn new(epsilon: f64) -> Result<Self, EpsilonError> {
-        checked(epsilon).map(|epsilon| Self { epsilon })
+        Epsilon::new(epsilon).map(|epsilon| Self { epsilon })
     }
 
     /// The greatest optical thickness of a stratum in the majorant \[1\].
     #[must_use]
     pub fn epsilon(&self) -> f64 {
-        self.epsilon
+        self.epsilon.get()
     }
 
     /// The whole profile as one cell.
@@ -94,13 +71,13 @@ impl JitteredRatioInCells {
     /// # Errors
     /// If `epsilon` is not in (0, 1\].
     pub fn new(epsilon: f64) -> Result<Self, EpsilonError> {
-        checked(epsilon).map(|epsilon| Self { epsilon })
+        Epsilon::new(epsilon).map(|epsilon| Self { epsilon })
     }
 
     /// The greatest optical thickness of a stratum in the range of its cell \[1\].
     #[must_use]
     pub fn epsilon(&self) -> f64 {
-        self.epsilon
+        self.epsilon.get()
     }
 }
 
@@ -117,15 +94,15 @@ pub(crate) struct Strata {
 
 impl Strata {
     #[inline]
-    pub(crate) fn of(cell: &BoundCell, from: f64, epsilon: f64) -> Self {
+    pub(crate) fn of(cell: &BoundCell, from: f64, epsilon: Epsilon) -> Self {
         let width = cell.to - from;
         let thickness = cell.range() * width;
-        if thickness <= 0.0 {
-            return Self { count: 0.0, width, thickness: 0.0 };
+        let count = epsilon.strata(thickness);
+        if count == 0.0 {
+            return Self { count, width, thickness: 0.0 };
         }
-        let count = (thickness / epsilon).ceil().max(1.0);
         // The quotient may exceed ε by a rounding, and F leave [0, 1] with it.
-        Self { count, width: width / count, thickness: (thickness / count).min(epsilon) }
+        Self { count, width: width / count, thickness: (thickness / count).min(epsilon.get()) }
     }
 }
 
@@ -134,7 +111,7 @@ impl Strata {
 fn multiply_cell<F: Extinction>(
     product: &mut SignedProduct,
     field: &F,
-    (from, cell, epsilon): (f64, &BoundCell, f64),
+    (from, cell, epsilon): (f64, &BoundCell, Epsilon),
     source: &mut impl UniformSource,
 ) {
     let strata = Strata::of(cell, from, epsilon);
@@ -197,12 +174,7 @@ impl<F: BoundedInCells> TransmittanceEstimator<F> for JitteredRatioInCells {
 }
 
 impl<F: Majorant> ClosedForm<F> for JitteredRatio {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         let cell = Self::cell(quadrature.field());
         let cells: &[BoundCell] = if cell.to > 0.0 { &[cell] } else { &[] };
         theory_of(cells, self.epsilon, quadrature, tolerance)
@@ -210,12 +182,7 @@ impl<F: Majorant> ClosedForm<F> for JitteredRatio {
 }
 
 impl<F: BoundedInCells> ClosedForm<F> for JitteredRatioInCells {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         let cells = quadrature.field().bound_cells().to_vec();
         theory_of(&cells, self.epsilon, quadrature, tolerance)
     }
@@ -246,13 +213,14 @@ mod tests {
     #[test]
     fn strata_are_as_many_as_needed_and_no_thicker_than_epsilon() {
         for (thickness, epsilon) in [(20.0, 0.5), (20.0, 0.3), (1e-9, 1.0), (0.7, 0.1), (3.0, 1.0)] {
-            let strata = Strata::of(&cell(2.0, 0.0, thickness), 1.0, epsilon);
+            let strata = Strata::of(&cell(2.0, 0.0, thickness), 1.0, Epsilon::new(epsilon).unwrap());
             assert!(strata.thickness <= epsilon && strata.count >= 1.0);
             assert!((strata.count * strata.thickness / thickness - 1.0).abs() < 1e-12);
             assert!((strata.count - 1.0) * epsilon < thickness * (1.0 + 1e-12));
         }
-        assert_eq!(Strata::of(&cell(2.0, 0.25, 0.25), 1.0, 0.5).count, 0.0);
-        assert_eq!(Strata::of(&cell(0.0, 0.0, 1.0), 0.0, 0.5).count, 0.0);
+        let half = Epsilon::new(0.5).unwrap();
+        assert_eq!(Strata::of(&cell(2.0, 0.25, 0.25), 1.0, half).count, 0.0);
+        assert_eq!(Strata::of(&cell(0.0, 0.0, 1.0), 0.0, half).count, 0.0);
     }
 
     #[test]
@@ -296,13 +264,5 @@ mod tests {
         let known = InCells::new(&steps, [cell(1.0, 3.0, 3.0), cell(2.0, 0.25, 0.25)]).unwrap();
         let estimate = JitteredRatioInCells::new(0.5).unwrap().estimate(&known, &mut Scripted::new([]));
         assert_eq!(estimate, (-3.25_f64).exp());
-    }
-
-    #[test]
-    fn an_epsilon_outside_its_interval_is_refused() {
-        for epsilon in [0.0, -1.0, f64::NAN] {
-            assert!(matches!(JitteredRatio::new(epsilon), Err(EpsilonError::NotPositive { .. })));
-        }
-        assert_eq!(JitteredRatioInCells::new(1.5), Err(EpsilonError::AboveOne { found: 1.5 }));
     }
 }

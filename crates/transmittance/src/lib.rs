@@ -81,7 +81,7 @@ pub use explorers::{Explorers, TooFewExplorers};
 pub use factors::FactorLaw;
 pub use generalised_poisson::{GeneralisedPoisson, GeneralisedPoissonError};
 pub use hybrid::{Choice, Experience, Forecast, Hybrid, Pilot};
-pub use jittered_ratio::{EpsilonError, JitteredRatio, JitteredRatioInCells};
+pub use jittered_ratio::{JitteredRatio, JitteredRatioInCells};
 pub use line_integral::{LineIntegral, NoSplits, Starts};
 pub use next_flight::{NextFlight, NextFlightVersion};
 pub use p_series::{PSeries, PSeriesVersion, PivotError};

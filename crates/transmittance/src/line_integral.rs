@@ -145,12 +145,7 @@ impl<F: Majorant> Escape<'_, F> {
 }
 
 impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let p_volume = collision_probability(quadrature.field());
         let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
         if p_volume == 0.0 {
@@ -166,15 +161,15 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         }
         let n = f64::from(self.splits);
         let lookups = n * expected_lookups(quadrature, tolerance) / p_volume;
-        if optical_thickness - 3.0 * n.ln() > RARE {
+        if tau - 3.0 * n.ln() > RARE {
             let depth = quadrature.field().majorant() * quadrature.field().length();
-            return of_rare_escapes((optical_thickness, depth), p_volume / n, lookups);
+            return of_rare_escapes((tau, depth), p_volume / n, lookups);
         }
         let cumulative = quadrature.cumulative(tolerance, |_, sigma_t| [sigma_t]);
         let field = quadrature.field();
         let total = cumulative.at(field.length())[0];
         let escape = Escape { field, optical_thickness: cumulative, total, p_volume };
-        let transmittance = (-optical_thickness).exp();
+        let transmittance = (-tau).exp();
         // E[number of escapes] = n (T − p_S) / p_V
         let mean = n * (transmittance - (1.0 - p_volume)) / p_volume;
         let breaks: Vec<f64> = field.breakpoints().iter().map(|&t| (n * escape.variate(t)).fract()).collect();

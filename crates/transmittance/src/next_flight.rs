@@ -101,12 +101,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for NextFlight {
 }
 
 impl<F: Majorant> ClosedForm<F> for NextFlight {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let (majorant, length) = (quadrature.field().majorant(), quadrature.field().length());
         if majorant <= 0.0 {
             return of_variance(0.0, 0.0, 0.0, 0.0);
@@ -121,8 +116,8 @@ impl<F: Majorant> ClosedForm<F> for NextFlight {
         let variance = quadrature.integrate_nested(
             tolerance,
             |_, sigma_t| [sigma_t, growth(sigma_t)],
-            |s, sigma_t, [tau, grown]| {
-                let g = majorant * (length - s) - (optical_thickness - tau);
+            |s, sigma_t, [before, grown]| {
+                let g = majorant * (length - s) - (tau - before);
                 steepest.set(steepest.get().max(-g));
                 let jump = sigma_t - majorant * (-g).exp();
                 // In units of exp(A(S)), which may overflow.
@@ -137,8 +132,8 @@ impl<F: Majorant> ClosedForm<F> for NextFlight {
         quadrature.integrate_nested(
             Tolerance::to(0.1),
             |_, sigma_t| [sigma_t, growth(sigma_t)],
-            |s, _, [tau, grown]| {
-                let g = majorant * (length - s) - (optical_thickness - tau);
+            |s, _, [before, grown]| {
+                let g = majorant * (length - s) - (tau - before);
                 let exponent = grown - total - 2.0 * g.min(0.0);
                 if exponent > greatest.get().0 {
                     greatest.set((exponent, s));
@@ -156,8 +151,8 @@ impl<F: Majorant> ClosedForm<F> for NextFlight {
         let variance = quadrature.integrate_nested(
             tolerance,
             |_, sigma_t| [sigma_t, growth(sigma_t)],
-            |s, sigma_t, [tau, grown]| {
-                let g = majorant * (length - s) - (optical_thickness - tau);
+            |s, sigma_t, [before, grown]| {
+                let g = majorant * (length - s) - (tau - before);
                 let (below, above) = (g.min(0.0), g.max(0.0));
                 let jump = (-above).exp() - sigma_t / majorant * below.exp();
                 [(grown - scale - 2.0 * below).exp() * majorant * jump * jump

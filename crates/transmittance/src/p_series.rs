@@ -336,19 +336,14 @@ impl PSeries {
 }
 
 impl<F: Extinction> ClosedForm<F> for PSeries {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let (pivot, length) = (self.pivot, quadrature.field().length());
         match self.version {
             PSeriesVersion::Cumulative => {
-                let mean = if length > 0.0 { optical_thickness / length } else { 0.0 };
+                let mean = if length > 0.0 { tau / length } else { 0.0 };
                 let spread =
                     quadrature.integrate(tolerance, |_, sigma_t| [length * (sigma_t - mean).powi(2)]);
-                let (v, y) = (spread.value[0] + spread.error[0], pivot - optical_thickness);
+                let (v, y) = (spread.value[0] + spread.error[0], pivot - tau);
                 // |Y| has kinks where Y vanishes: split there, a rough integral and its error are enough.
                 quadrature.split_at_zeros(tolerance, &|_, sigma_t| pivot - length * sigma_t);
                 let of_magnitude = |_: f64, sigma_t: f64| [(pivot - length * sigma_t).abs() / length];
@@ -369,10 +364,10 @@ impl<F: Extinction> ClosedForm<F> for PSeries {
                 ProductLaw::new(collisions.value).theory(collisions.error[0], pivot)
             }
             PSeriesVersion::Cmf | PSeriesVersion::NextFlight => {
-                let mean = if length > 0.0 { optical_thickness / length } else { 0.0 };
+                let mean = if length > 0.0 { tau / length } else { 0.0 };
                 let spread =
                     quadrature.integrate(tolerance, |_, sigma_t| [length * (sigma_t - mean).powi(2)]);
-                self.fixed_orders(pivot - optical_thickness, spread.value[0], spread.error[0])
+                self.fixed_orders(pivot - tau, spread.value[0], spread.error[0])
             }
         }
     }

@@ -66,15 +66,10 @@ impl<F: Extinction> TransmittanceEstimator<F> for RayMarching {
 }
 
 impl<F: Breakpoints> ClosedForm<F> for RayMarching {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let field = quadrature.field();
         // In units of T: exp(tau − X), which does not underflow with T.
-        let relative = |offset: f64| (optical_thickness - self.thickness(field, offset)).exp();
+        let relative = |offset: f64| (tau - self.thickness(field, offset)).exp();
         let lookups = f64::from(self.steps);
         if self.offset == Offset::Fixed || field.length() == 0.0 {
             return Theory {
@@ -90,12 +85,12 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
         let breaks: Vec<f64> = field.breakpoints().iter().map(|s| (s * steps).fract()).collect();
         let greatest = Cell::new(f64::NEG_INFINITY);
         let mean = adaptive_integral(1.0, &breaks, tolerance, |offset| {
-            let exponent = optical_thickness - self.thickness(field, offset);
+            let exponent = tau - self.thickness(field, offset);
             greatest.set(greatest.get().max(exponent));
             [exponent.exp()]
         });
         if greatest.get() > MOST_EXPONENT {
-            let exponent = |offset: f64| optical_thickness - self.thickness(field, offset);
+            let exponent = |offset: f64| tau - self.thickness(field, offset);
             return of_great_exponents((&breaks, tolerance), greatest.get(), &exponent, lookups);
         }
         let mean = mean.value[0];

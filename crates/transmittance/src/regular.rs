@@ -23,12 +23,7 @@ impl<F: OpticalThickness> TransmittanceEstimator<F> for Regular {
 }
 
 impl<F: OpticalThickness> ClosedForm<F> for Regular {
-    fn theory(
-        &self,
-        _quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        _tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, _quadrature: &mut RayQuadrature<F>, _tau: f64, _tolerance: Tolerance) -> Theory {
         Theory::exact()
     }
 }

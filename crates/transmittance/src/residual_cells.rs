@@ -99,12 +99,7 @@ impl<F: BoundedInCells> TransmittanceEstimator<F> for ResidualCells {
 }
 
 impl<F: BoundedInCells> ClosedForm<F> for ResidualCells {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         let cells: Vec<BoundCell> = quadrature.field().bound_cells().to_vec();
         let ends: Vec<f64> = cells.iter().map(|cell| cell.to).collect();
         let (_, collisions) = quadrature.integrate_parts(tolerance, &ends, |i, _, sigma_t| {

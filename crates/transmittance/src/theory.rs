@@ -52,22 +52,12 @@ impl Theory {
 
 /// An estimator whose law is known in closed form, up to quadrature over the ray.
 pub trait ClosedForm<F: Extinction> {
-    /// Moments and expected look-ups on the profile of `quadrature`, whose transmittance is exp(−`optical_thickness`).
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory;
+    /// Moments and expected look-ups on the profile of `quadrature`, whose transmittance is exp(−`tau`).
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory;
 }
 
 impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
-        (**self).theory(quadrature, optical_thickness, tolerance)
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
+        (**self).theory(quadrature, tau, tolerance)
     }
 }

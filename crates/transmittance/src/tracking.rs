@@ -145,12 +145,7 @@ impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThic
 impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> ClosedForm<F>
     for Tracking<M, C, R>
 {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         // Where σ_samp = 0 nothing happens: no variance, no look-up.
         let at = |s: f64, sigma_t: f64| {
             let sampling = self.sampling.sigma_t(s);

@@ -62,13 +62,7 @@ pub(crate) fn collides<F: Majorant>(
 }
 
 impl<F: Majorant> ClosedForm<F> for Woodcock {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
-        let tau = optical_thickness;
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         // E[(W − 1)^j] = (−1)^j r, so that J_j = (−1)^j tau.
         let law = ProductLaw::new(std::array::from_fn(|i| if i % 2 == 0 { tau } else { -tau }));
         Theory {

@@ -83,8 +83,8 @@ fn exact_furnace() -> Outcome {
         for channel in 0..3 {
             let wavelength = Wavelength::new(&field, channel).expect(LAWFUL);
             let mut quadrature = RayQuadrature::new(wavelength, &[]);
-            let collided = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
-            sums.push(collided + tracking.escaped(&mut quadrature, Tolerance::TIGHT)[0]);
+            let collided = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
+            sums.push(collided + tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[0]);
         }
     }
     let worst = sums.into_iter().fold(1.0, |worst: f64, sum| {
@@ -100,7 +100,7 @@ fn two_wavelengths(ratio: f64, run: Run) -> Outcome {
         let field = Scaled::new(constant(1.0, length), [1.0, ratio]).expect(LAWFUL);
         let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).expect(LAWFUL), &[]);
         let mut of = |sampler: &dyn ClosedForm<_>| {
-            sampler.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1]
+            sampler.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1]
         };
         let shared = of(&SharedDistance::new(constant(ratio, length)));
         (shared, of(&SpectralTracking::new(MaxScheme, constant(ratio, length))))

@@ -1,12 +1,13 @@
 //! Decomposition tracking: a control in closed form races with what is left of the field (kutz-2017).
 
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race, powers, times_exp};
-use crate::{ClosedForm, Flight, FreeFlight};
+use crate::theory::{Moments, lookups_of_a_race};
+use crate::weight_law::Along;
+use crate::{ClosedForm, Flight, FreeFlight, WeightLaw};
 use fairflight_collision::{
     Albedo, AlbedoError, CollisionModel, Outcome, SingleOutcome, SingleParticle, Version,
 };
 use fairflight_media::{
-    Extinction, Integral, InvertOpticalThickness, RayQuadrature, Tolerance, rounding_of_difference,
+    Extinction, InvertOpticalThickness, RayQuadrature, Tolerance, rounding_of_difference,
 };
 use fairflight_sources::UniformSource;
 
@@ -57,20 +58,21 @@ impl<C: InvertOpticalThickness, R: InvertOpticalThickness> DecompositionTracking
     }
 
     /// d ln M_k/ds.
-    fn growth(&self, s: f64, sigma_t: f64) -> [f64; HIGHEST_MOMENT] {
+    fn growth(&self, s: f64, sigma_t: f64) -> Moments {
         let (control, sampling, ratio) = self.at(s, sigma_t);
         let transmitted = self.model.transmitted(ratio);
         std::array::from_fn(|i| sampling * (transmitted.moment(i as i32 + 1) - 1.0) - control)
     }
 
-    /// Splits the ray where the moments of a collision are not smooth in ρ.
-    fn split_at_kinks<F: Extinction>(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) {
-        for kink in self.model.kinks() {
-            quadrature.split_at_zeros(tolerance, &|s, sigma_t| {
+    /// Where the moments of a collision are not smooth in ρ.
+    fn kinks<F>(&self) -> Vec<Along<'_, F, f64>> {
+        let distance = |kink: f64| -> Along<'_, F, f64> {
+            Box::new(move |_, s, sigma_t| {
                 let (_, sampling, ratio) = self.at(s, sigma_t);
                 if sampling > 0.0 { ratio - kink } else { 1.0 }
-            });
-        }
+            })
+        };
+        self.model.kinks().into_iter().map(distance).collect()
     }
 }
 
@@ -117,40 +119,23 @@ impl<F: Extinction, C: InvertOpticalThickness, R: InvertOpticalThickness> FreeFl
     }
 }
 
-impl<F: Extinction, C: InvertOpticalThickness, R: InvertOpticalThickness> ClosedForm<F>
+impl<F: Extinction + Clone, C: InvertOpticalThickness, R: InvertOpticalThickness> ClosedForm<F>
     for DecompositionTracking<C, R>
 {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        self.split_at_kinks(quadrature, tolerance);
-        quadrature.integrate_nested(
-            tolerance,
-            |s, sigma_t| self.growth(s, sigma_t),
-            |s, sigma_t, growth| {
+    fn weights(&self) -> WeightLaw<'_, F> {
+        WeightLaw::products(
+            self.kinks(),
+            |_, s, sigma_t| self.growth(s, sigma_t),
+            |_, s, sigma_t| {
                 let (control, sampling, ratio) = self.at(s, sigma_t);
-                let (scattered, scores) = (self.model.scattered(ratio), powers(score(s)));
-                std::array::from_fn(|i| {
-                    times_exp(control + sampling * scattered.moment(i as i32 + 1), growth[i], scores[i])
-                })
+                let scattered = self.model.scattered(ratio);
+                std::array::from_fn(|i| control + sampling * scattered.moment(i as i32 + 1))
             },
         )
     }
 
-    fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> [f64; HIGHEST_MOMENT] {
-        self.split_at_kinks(quadrature, tolerance);
-        quadrature.integrate(tolerance, |s, sigma_t| self.growth(s, sigma_t)).value.map(f64::exp)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        self.split_at_kinks(quadrature, tolerance);
+    fn lookups(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Option<Moments> {
+        self.weights().split_at_kinks(quadrature, tolerance);
         Some(lookups_of_a_race(quadrature, tolerance, &|s, sigma_t| {
             let (control, sampling, ratio) = self.at(s, sigma_t);
             let [ends, passes] =
@@ -163,15 +148,10 @@ impl<F: Extinction, C: InvertOpticalThickness, R: InvertOpticalThickness> Closed
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::{VERSIONS, constant};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseConstant};
+    use fairflight_media::PiecewiseConstant;
     use fairflight_sources::Scripted;
-
-    const VERSIONS: [Version; 3] = [Version::Terminating, Version::NonTerminating, Version::Adaptive];
-
-    fn constant(sigma: f64) -> Constant {
-        Constant::new(sigma, 1.0).unwrap()
-    }
 
     #[test]
     fn the_nearer_of_both_flights() {
@@ -207,9 +187,9 @@ mod tests {
             let tracking = DecompositionTracking::new(version, constant(control), constant(sampling));
             let mut quadrature = RayQuadrature::new(&field, &[]);
             let tau = 0.58_f64;
-            let found = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
+            let found = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
             assert_relative_eq!(found, -(-tau).exp_m1(), max_relative = 1e-11);
-            let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT)[0];
+            let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[0];
             assert_relative_eq!(escaped, (-tau).exp(), max_relative = 1e-12);
         }
     }
@@ -219,7 +199,7 @@ mod tests {
     fn the_second_moment_of_a_control_above_the_field() {
         let tracking = DecompositionTracking::new(Version::NonTerminating, constant(1.0), constant(1.0));
         let mut quadrature = RayQuadrature::new(constant(0.5), &[]);
-        let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT)[1];
+        let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[1];
         assert_relative_eq!(escaped, 1.0_f64.exp(), max_relative = 1e-12);
     }
 

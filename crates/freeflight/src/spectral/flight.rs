@@ -53,15 +53,10 @@ impl<const N: usize> SpectralFlight<N> {
 ///
 /// It is the law of [`crate::FreeFlight`] for each wavelength by itself. Weights of one flight depend on each other.
 pub trait SpectralFreeFlight<F: SpectralExtinction<N>, const N: usize> {
-    /// Draws one flight of a path that came with the weights `incoming`, not all 0; they multiply the law. A sampler that
+    /// Draws one flight of a path that came with the weights `past`, not all 0; they multiply the law. A sampler that
     /// decides by the whole path (the average scheme, the hero wavelength) decides by them, so that its bound is one of the
     /// path and not one per flight.
-    fn sample_from(
-        &self,
-        field: &F,
-        incoming: [f64; N],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<N>;
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N>;
 
     /// Draws one flight from the start of the profile, of a path that begins here.
     #[inline]
@@ -75,13 +70,8 @@ pub trait SpectralFreeFlight<F: SpectralExtinction<N>, const N: usize> {
 
 impl<F: SpectralExtinction<N>, E: SpectralFreeFlight<F, N>, const N: usize> SpectralFreeFlight<F, N> for &E {
     #[inline]
-    fn sample_from(
-        &self,
-        field: &F,
-        incoming: [f64; N],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<N> {
-        (**self).sample_from(field, incoming, source)
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
+        (**self).sample_from(field, past, source)
     }
     #[inline]
     fn admits(&self, field: &F, s: f64, sigma_t: &[f64; N]) -> bool {

@@ -2,11 +2,10 @@
 
 use super::flight::{centred, magnitude, pick};
 use super::{SpectralFlight, SpectralFreeFlight};
-use crate::ClosedForm;
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_race};
+use crate::theory::{HIGHEST_MOMENT, Moments, lookups_of_a_race};
+use crate::{ClosedForm, WeightLaw};
 use fairflight_media::{
-    Extinction, Integral, InvertOpticalThickness, RayQuadrature, SpectralExtinction, Tolerance, Vacuum,
-    Wavelength,
+    Extinction, InvertOpticalThickness, RayQuadrature, SpectralExtinction, Tolerance, Vacuum, Wavelength,
 };
 use fairflight_sources::UniformSource;
 
@@ -34,7 +33,7 @@ use fairflight_sources::UniformSource;
 ///
 /// **Cost.** (1/N) Σ_j ∫ majorant T_j ds look-ups, and one variate for the hero.
 ///
-/// **Domain.** 0 ≤ σ_l(s) ≤ majorant(s) for every wavelength. With `incoming` weights the hero is drawn in proportion to
+/// **Domain.** 0 ≤ σ_l(s) ≤ majorant(s) for every wavelength. With `past` weights the hero is drawn in proportion to
 /// their magnitude, and Σ|w| is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeroWavelength<R> {
@@ -53,14 +52,9 @@ impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> Spectr
     for HeroWavelength<R>
 {
     #[inline]
-    fn sample_from(
-        &self,
-        field: &F,
-        incoming: [f64; N],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<N> {
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.majorant.length(), "prepared for another profile");
-        let (mut weights, unit) = centred(incoming);
+        let (mut weights, unit) = centred(past);
         let hero = pick(&weights, source);
         let mut s = 0.0;
         while let Some(next) = self.majorant.invert(s, source.next_exponential()) {
@@ -92,30 +86,6 @@ fn balanced<const N: usize>(weights: &[f64; N], events: &[f64; N]) -> [f64; N] {
     after.map(|weight| weight / probability)
 }
 
-/// E\[1{collided} weight score\], and NaN for the higher powers, which have no closed form.
-pub(super) fn mean_of_collisions<F: Extinction>(
-    quadrature: &mut RayQuadrature<F>,
-    tolerance: Tolerance,
-    score: &dyn Fn(f64) -> f64,
-) -> Integral<HIGHEST_MOMENT> {
-    let mean = quadrature.integrate_nested(
-        tolerance,
-        |_, sigma_t| [sigma_t],
-        |s, sigma_t, [tau]| [sigma_t * (-tau).exp() * score(s)],
-    );
-    let only = |value: [f64; 1]| std::array::from_fn(|i| if i == 0 { value[0] } else { f64::NAN });
-    Integral { value: only(mean.value), error: only(mean.error), converged: mean.converged }
-}
-
-/// E\[1{escaped} weight\], and NaN for the higher powers.
-pub(super) fn mean_of_escapes<F: Extinction>(
-    quadrature: &mut RayQuadrature<F>,
-    tolerance: Tolerance,
-) -> [f64; HIGHEST_MOMENT] {
-    let tau = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0];
-    std::array::from_fn(|i| if i == 0 { (-tau).exp() } else { f64::NAN })
-}
-
 /// The moments of the number of look-ups, where each wavelength is as likely to decide: the mean of those of N walks.
 pub(super) fn lookups_of_a_mixture<
     F: SpectralExtinction<N> + Copy,
@@ -127,7 +97,7 @@ pub(super) fn lookups_of_a_mixture<
     tolerance: Tolerance,
     control: &C,
     sampling: &R,
-) -> [f64; HIGHEST_MOMENT] {
+) -> Moments {
     let field = *quadrature.field();
     let mut mean = [0.0; HIGHEST_MOMENT];
     for hero in 0..N {
@@ -146,30 +116,13 @@ pub(super) fn lookups_of_a_mixture<
 impl<F: SpectralExtinction<N> + Copy, R: InvertOpticalThickness, const N: usize> ClosedForm<Wavelength<F, N>>
     for HeroWavelength<R>
 {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        mean_of_collisions(quadrature, tolerance, score)
+    fn weights(&self) -> WeightLaw<'_, Wavelength<F, N>> {
+        WeightLaw::MeanOnly
     }
 
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        mean_of_escapes(quadrature, tolerance)
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    fn lookups(&self, nodes: &mut RayQuadrature<Wavelength<F, N>>, tolerance: Tolerance) -> Option<Moments> {
         let control = Vacuum::new(self.majorant.length());
-        Some(lookups_of_a_mixture(quadrature, tolerance, &control, &self.majorant))
+        Some(lookups_of_a_mixture(nodes, tolerance, &control, &self.majorant))
     }
 }
 
@@ -177,18 +130,15 @@ impl<F: SpectralExtinction<N> + Copy, R: InvertOpticalThickness, const N: usize>
 mod tests {
     use super::*;
     use crate::spectral::{AverageScheme, SpectralTracking};
+    use crate::test_support::{constant, spectrum};
     use approx::assert_relative_eq;
-    use fairflight_media::{Constant, PiecewiseConstant, Profiles, Scaled};
+    use fairflight_media::{PiecewiseConstant, Profiles};
     use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
-
-    fn constant(sigma: f64) -> Constant {
-        Constant::new(sigma, 1.0).unwrap()
-    }
 
     #[test]
     fn weights_are_n_times_a_density_over_the_sum() {
         // Majorant 1, ratios 1/2, 1/4: after a null collision and a collision p = (1/4, 3/16).
-        let field = Scaled::new(constant(1.0), [0.5, 0.25]).unwrap();
+        let field = spectrum([0.5, 0.25]);
         let hero = HeroWavelength::new(constant(1.0));
         let flight = hero.sample(&field, &mut Scripted::new([0.1, 0.1, 0.6, 0.1, 0.4]));
         assert!(matches!(flight, SpectralFlight::Collided { .. }));
@@ -237,7 +187,7 @@ mod tests {
     /// E[w_l²] = N Σ_n Pois(n) (1 − r_l)^(2n)/Σ_j (1 − r_j)^n.
     #[test]
     fn the_second_moment_of_an_escape_in_a_homogeneous_medium() {
-        let field = Scaled::new(constant(1.0), [0.4, 1.6]).unwrap();
+        let field = spectrum([0.4, 1.6]);
         let mu = 2.0_f64;
         let passes = [0.8_f64, 0.2];
         let (mut poisson, mut exact) = ((-mu).exp(), 0.0);
@@ -264,13 +214,13 @@ mod tests {
     /// A path that hardly counts any more: in products of denormal weights the shares of the wavelengths would be 0/0.
     #[test]
     fn weights_at_the_ends_of_the_numbers_are_those_in_the_middle() {
-        let field = Scaled::new(constant(1.0), [0.9, 0.2]).unwrap();
+        let field = spectrum([0.9, 0.2]);
         let hero = HeroWavelength::new(constant(1.3));
         let average = SpectralTracking::new(AverageScheme, constant(1.3));
-        let both = |incoming: [f64; 2], seed: u64| {
+        let both = |past: [f64; 2], seed: u64| {
             [
-                hero.sample_from(&field, incoming, &mut Seeded::new(seed)),
-                average.sample_from(&field, incoming, &mut Seeded::new(seed)),
+                hero.sample_from(&field, past, &mut Seeded::new(seed)),
+                average.sample_from(&field, past, &mut Seeded::new(seed)),
             ]
         };
         for unit in [f64::from_bits(1 << 20), 2.0_f64.powi(1000)] {
@@ -290,7 +240,7 @@ mod tests {
         // Hard case 7: the ratio of the first rounds to 1 or to the number below it.
         let near = 1.0 - f64::EPSILON / 2.0;
         for sigma in [1.0, near] {
-            let field = Scaled::new(constant(1.0), [sigma, 0.0]).unwrap();
+            let field = spectrum([sigma, 0.0]);
             let script = Scripted::new([0.0, 0.1, LARGEST_VARIATE, LARGEST_VARIATE]);
             let flight = HeroWavelength::new(constant(1.0)).sample(&field, &mut { script });
             assert!(flight.weights().iter().all(|weight| weight.is_finite()), "{sigma}: {flight:?}");
@@ -299,10 +249,11 @@ mod tests {
 
     #[test]
     fn the_mean_weight_of_an_escape_is_the_transmittance() {
-        let field = Scaled::new(constant(1.0), [0.5, 0.25]).unwrap();
+        let field = spectrum([0.5, 0.25]);
         for (l, sigma_t) in [0.5_f64, 0.25].into_iter().enumerate() {
             let mut quadrature = RayQuadrature::new(Wavelength::new(&field, l).unwrap(), &[]);
-            let escaped = HeroWavelength::new(constant(1.0)).escaped(&mut quadrature, Tolerance::TIGHT);
+            let escaped =
+                HeroWavelength::new(constant(1.0)).weights().escaped(&mut quadrature, Tolerance::TIGHT);
             assert_relative_eq!(escaped[0], (-sigma_t).exp(), max_relative = 1e-12);
             assert!(escaped[1..].iter().all(|moment| moment.is_nan()));
         }

@@ -2,11 +2,9 @@
 
 use super::flight::{magnitude, pick};
 use super::{SpectralFlight, SpectralFreeFlight};
-use crate::theory::{HIGHEST_MOMENT, lookups_of_a_walk};
-use crate::{ClosedForm, Flight, FreeFlight, Woodcock};
-use fairflight_media::{
-    Integral, InvertOpticalThickness, RayQuadrature, SpectralExtinction, Tolerance, Wavelength,
-};
+use crate::theory::{HIGHEST_MOMENT, Moments, lookups_of_a_walk};
+use crate::{ClosedForm, Flight, FreeFlight, WeightLaw, Woodcock};
+use fairflight_media::{InvertOpticalThickness, RayQuadrature, SpectralExtinction, Tolerance, Wavelength};
 use fairflight_sources::UniformSource;
 
 /// Woodcock tracking of one wavelength at a time, each through a majorant of its own: the baseline of all that share a path.
@@ -59,15 +57,10 @@ impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> Spectr
     for SeparateSolve<R, N>
 {
     #[inline]
-    fn sample_from(
-        &self,
-        field: &F,
-        incoming: [f64; N],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<N> {
-        let drawn = pick(&incoming, source);
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
+        let drawn = pick(&past, source);
         let mut weights = [0.0; N];
-        weights[drawn] = magnitude(&incoming).copysign(incoming[drawn]);
+        weights[drawn] = magnitude(&past).copysign(past[drawn]);
         match self.sample_one(field, drawn, source) {
             Flight::Collided { distance, .. } => SpectralFlight::Collided { distance, weights },
             Flight::Escaped { .. } => SpectralFlight::Escaped { weights },
@@ -81,45 +74,18 @@ impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> Spectr
     }
 }
 
-/// N^(k − 1), k = 1 … 8.
-fn multiplicity<const N: usize>() -> [f64; HIGHEST_MOMENT] {
-    std::array::from_fn(|i| (N as f64).powi(i as i32))
-}
-
 impl<F: SpectralExtinction<N> + Copy, R: InvertOpticalThickness, const N: usize> ClosedForm<Wavelength<F, N>>
     for SeparateSolve<R, N>
 {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        // That of weights of 1, of any Woodcock flight.
-        let one = self.flights[0].collided(quadrature, tolerance, score);
-        let times =
-            |values: [f64; HIGHEST_MOMENT]| std::array::from_fn(|i| multiplicity::<N>()[i] * values[i]);
-        Integral { value: times(one.value), error: times(one.error), converged: one.converged }
+    fn weights(&self) -> WeightLaw<'_, Wavelength<F, N>> {
+        WeightLaw::OneIn(N)
     }
 
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        let one = self.flights[0].escaped(quadrature, tolerance);
-        std::array::from_fn(|i| multiplicity::<N>()[i] * one[i])
-    }
-
-    fn lookups(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
-        let field = *quadrature.field();
+    fn lookups(&self, nodes: &mut RayQuadrature<Wavelength<F, N>>, tolerance: Tolerance) -> Option<Moments> {
+        let field = *nodes.field();
         let mut mean = [0.0; HIGHEST_MOMENT];
         for (l, flight) in self.flights.iter().enumerate() {
-            let of_one = lookups_of_a_walk(quadrature, tolerance, &|s, _| {
+            let of_one = lookups_of_a_walk(nodes, tolerance, &|s, _| {
                 let sigma_t = field.spectrum().sigma_t(s)[l];
                 [sigma_t, flight.majorant().sigma_t(s) - sigma_t]
             });
@@ -134,13 +100,12 @@ impl<F: SpectralExtinction<N> + Copy, R: InvertOpticalThickness, const N: usize>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fairflight_media::{Constant, Scaled};
+    use crate::test_support::{constant, spectrum};
     use fairflight_sources::{LARGEST_VARIATE, Scripted};
 
     #[test]
     fn one_wavelength_counts_for_all_that_are_not_drawn() {
-        let constant = |sigma| Constant::new(sigma, 1.0).unwrap();
-        let field = Scaled::new(constant(1.0), [0.5, 0.0]).unwrap();
+        let field = spectrum([0.5, 0.0]);
         let separate = SeparateSolve::new([constant(0.5), constant(0.0)]);
         let drawn = |u: f64| separate.sample(&field, &mut Scripted::new([u, LARGEST_VARIATE]));
         assert_eq!(drawn(0.4), SpectralFlight::Escaped { weights: [2.0, 0.0] });
@@ -152,8 +117,7 @@ mod tests {
 
     #[test]
     fn expected_look_ups_are_the_mean_over_wavelengths() {
-        let constant = |sigma| Constant::new(sigma, 1.0).unwrap();
-        let field = Scaled::new(constant(1.0), [0.5, 0.0]).unwrap();
+        let field = spectrum([0.5, 0.0]);
         let separate = SeparateSolve::new([constant(0.5), constant(0.0)]);
         let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 1).unwrap(), &[]);
         let lookups = separate.lookups(&mut quadrature, Tolerance::TIGHT).unwrap();

@@ -1,10 +1,11 @@
 //! One distance for all wavelengths by the density of one extinction: the case that raab-2008 section 3.2 warns of.
 
 use super::{SpectralFlight, SpectralFreeFlight};
-use crate::ClosedForm;
-use crate::theory::{HIGHEST_MOMENT, powers, times_exp};
+use crate::theory::{HIGHEST_MOMENT, Moments, powers, times_exp};
+use crate::weight_law::WeightProducts;
+use crate::{ClosedForm, WeightLaw};
 use fairflight_media::{
-    Integral, InvertOpticalThickness, RayQuadrature, SpectralExtinction, SpectralOpticalThickness, Tolerance,
+    InvertOpticalThickness, RayQuadrature, SpectralExtinction, SpectralOpticalThickness, Tolerance,
     Wavelength,
 };
 use fairflight_sources::UniformSource;
@@ -37,12 +38,7 @@ impl<F: SpectralOpticalThickness<N>, R: InvertOpticalThickness, const N: usize> 
     for SharedDistance<R>
 {
     #[inline]
-    fn sample_from(
-        &self,
-        field: &F,
-        incoming: [f64; N],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<N> {
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
         // T_l/exp(−∫ σ_samp) up to s as one exponential: neither of the two need be a number by itself.
         let exponents = |s: f64| {
@@ -55,13 +51,13 @@ impl<F: SpectralOpticalThickness<N>, R: InvertOpticalThickness, const N: usize> 
                 let (sigma_t, exponents) = (field.sigma_t(distance), exponents(distance));
                 let sampling = self.sampling.sigma_t(distance);
                 let weights =
-                    std::array::from_fn(|l| times_exp(incoming[l], exponents[l], sigma_t[l] / sampling));
+                    std::array::from_fn(|l| times_exp(past[l], exponents[l], sigma_t[l] / sampling));
                 SpectralFlight::Collided { distance, weights }
             }
             None => {
                 let exponents = exponents(field.length());
                 SpectralFlight::Escaped {
-                    weights: std::array::from_fn(|l| times_exp(incoming[l], exponents[l], 1.0)),
+                    weights: std::array::from_fn(|l| times_exp(past[l], exponents[l], 1.0)),
                 }
             }
         }
@@ -74,48 +70,35 @@ impl<F: SpectralOpticalThickness<N>, R: InvertOpticalThickness, const N: usize> 
 }
 
 /// d ln/ds of T^k q^(1 − k) without its factors of σ.
-fn growth(sigma_t: f64, sampling: f64) -> [f64; HIGHEST_MOMENT] {
+fn growth(sigma_t: f64, sampling: f64) -> Moments {
     std::array::from_fn(|i| i as f64 * sampling - (i + 1) as f64 * sigma_t)
 }
 
 impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> ClosedForm<Wavelength<F, N>>
     for SharedDistance<R>
 {
-    fn collided(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-        score: &dyn Fn(f64) -> f64,
-    ) -> Integral<HIGHEST_MOMENT> {
-        quadrature.integrate_nested(
-            tolerance,
-            |s, sigma_t| growth(sigma_t, self.sampling.sigma_t(s)),
-            |s, sigma_t, logarithms| {
-                let sampling = self.sampling.sigma_t(s);
-                if sampling == 0.0 {
-                    return [0.0; HIGHEST_MOMENT];
-                }
-                let weights = powers(sigma_t / sampling * score(s));
-                std::array::from_fn(|i| times_exp(sampling * weights[i], logarithms[i], 1.0))
-            },
-        )
-    }
-
-    fn escaped(
-        &self,
-        quadrature: &mut RayQuadrature<Wavelength<F, N>>,
-        tolerance: Tolerance,
-    ) -> [f64; HIGHEST_MOMENT] {
-        let logarithms =
-            quadrature.integrate(tolerance, |s, sigma_t| growth(sigma_t, self.sampling.sigma_t(s)));
-        logarithms.value.map(f64::exp)
+    fn weights(&self) -> WeightLaw<'_, Wavelength<F, N>> {
+        let growth = |_: &_, s: f64, sigma_t: f64| growth(sigma_t, self.sampling.sigma_t(s));
+        let collided = |_: &_, s: f64, sigma_t: f64, logarithms: Moments, score: f64| {
+            let sampling = self.sampling.sigma_t(s);
+            if sampling == 0.0 {
+                return [0.0; HIGHEST_MOMENT];
+            }
+            let weights = powers(sigma_t / sampling * score);
+            std::array::from_fn(|i| times_exp(sampling * weights[i], logarithms[i], 1.0))
+        };
+        WeightLaw::Products(WeightProducts {
+            kinks: Vec::new(),
+            growth: Box::new(growth),
+            collided: Box::new(collided),
+        })
     }
 
     fn lookups(
         &self,
-        _quadrature: &mut RayQuadrature<Wavelength<F, N>>,
+        _nodes: &mut RayQuadrature<Wavelength<F, N>>,
         _tolerance: Tolerance,
-    ) -> Option<[f64; HIGHEST_MOMENT]> {
+    ) -> Option<Moments> {
         let drawn = self.sampling.optical_thickness(0.0, self.sampling.length());
         Some([-(-drawn).exp_m1(); HIGHEST_MOMENT])
     }
@@ -124,14 +107,14 @@ impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> Closed
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::{constant, spectrum};
     use approx::assert_relative_eq;
     use fairflight_media::{Constant, Scaled};
     use fairflight_sources::Scripted;
 
     #[test]
     fn weights_are_ratios_of_densities() {
-        let constant = |sigma| Constant::new(sigma, 1.0).unwrap();
-        let field = Scaled::new(constant(1.0), [1.0, 2.0]).unwrap();
+        let field = spectrum([1.0, 2.0]);
         let shared = SharedDistance::new(constant(2.0));
         let flight = shared.sample(&field, &mut Scripted::new([0.5]));
         let s = 0.5 * std::f64::consts::LN_2;
@@ -155,7 +138,7 @@ mod tests {
             assert!(weights[0] >= 0.0 && weights[1] == 0.0, "{u}: {weights:?}");
         }
         let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 1).unwrap(), &[]);
-        let collided = shared.collided(&mut quadrature, Tolerance::to(1e-6), &|_| 1.0);
+        let collided = shared.weights().collided(&mut quadrature, Tolerance::to(1e-6), &|_| 1.0);
         assert_eq!(collided.value, [0.0; HIGHEST_MOMENT]);
     }
 
@@ -166,7 +149,7 @@ mod tests {
             let field = Scaled::new(constant(1.0), [1.0, ratio]).unwrap();
             let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).unwrap(), &[]);
             let shared = SharedDistance::new(constant(ratio));
-            let found = shared.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1];
+            let found = shared.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[1];
             let rest = 2.0 - ratio;
             let covered = if rest == 0.0 { length } else { -(-rest * length).exp_m1() / rest };
             assert_relative_eq!(found, covered / ratio, max_relative = 1e-10);
@@ -176,10 +159,9 @@ mod tests {
     /// A flight of the rate 2 escapes a length of 1 with e^−2, and weighs e for a wavelength of σ_t = 1: M_k = e^(k − 2).
     #[test]
     fn the_moments_of_an_escape_by_hand() {
-        let constant = |sigma| Constant::new(sigma, 1.0).unwrap();
-        let field = Scaled::new(constant(1.0), [1.0, 2.0]).unwrap();
+        let field = spectrum([1.0, 2.0]);
         let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).unwrap(), &[]);
-        let escaped = SharedDistance::new(constant(2.0)).escaped(&mut quadrature, Tolerance::TIGHT);
+        let escaped = SharedDistance::new(constant(2.0)).weights().escaped(&mut quadrature, Tolerance::TIGHT);
         for (k, found) in (1..).zip(escaped) {
             assert_relative_eq!(found, f64::from(k - 2).exp(), max_relative = 1e-12);
         }

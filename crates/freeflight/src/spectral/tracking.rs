@@ -81,14 +81,9 @@ impl<
 > SpectralFreeFlight<F, N> for SpectralTracking<S, R, C>
 {
     #[inline]
-    fn sample_from(
-        &self,
-        field: &F,
-        incoming: [f64; N],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<N> {
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
-        let (mut weights, unit) = centred(incoming);
+        let (mut weights, unit) = centred(past);
         // An empty control takes no variate.
         let has_control = self.control.optical_thickness(0.0, self.control.length()) > 0.0;
         let control = if has_control { self.control.invert(0.0, source.next_exponential()) } else { None };
@@ -129,20 +124,11 @@ impl<
 mod tests {
     use super::*;
     use crate::spectral::{AverageScheme, MaxScheme};
+    use crate::test_support::{constant, spectrum};
     use crate::{ClosedForm, Flight};
     use approx::assert_relative_eq;
-    use fairflight_media::{
-        Constant, PiecewiseConstant, Profiles, RayQuadrature, Scaled, Tolerance, Wavelength,
-    };
+    use fairflight_media::{PiecewiseConstant, Profiles, RayQuadrature, Tolerance, Wavelength};
     use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
-
-    fn constant(sigma: f64) -> Constant {
-        Constant::new(sigma, 1.0).unwrap()
-    }
-
-    fn spectrum<const N: usize>(sigma: [f64; N]) -> Scaled<Constant, N> {
-        Scaled::new(constant(1.0), sigma).unwrap()
-    }
 
     #[test]
     fn events_by_hand() {
@@ -204,9 +190,9 @@ mod tests {
             for (l, tau) in [0.58_f64, 1.46].into_iter().enumerate() {
                 let wavelength = Wavelength::new(&field, l).unwrap();
                 let mut quadrature = RayQuadrature::new(wavelength, &[]);
-                let found = tracking.collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
+                let found = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
                 assert_relative_eq!(found, -(-tau).exp_m1(), max_relative = 1e-11);
-                let escaped = tracking.escaped(&mut quadrature, Tolerance::TIGHT)[0];
+                let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[0];
                 assert_relative_eq!(escaped, (-tau).exp(), max_relative = 1e-12);
             }
         }
@@ -219,7 +205,7 @@ mod tests {
         let tracking = SpectralTracking::new(MaxScheme, constant(golden));
         let field = spectrum([1.0, golden]);
         let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).unwrap(), &[]);
-        let second = tracking.escaped(&mut quadrature, Tolerance::TIGHT)[1];
+        let second = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[1];
         assert_relative_eq!(second, 1.0, max_relative = 1e-12);
     }
 

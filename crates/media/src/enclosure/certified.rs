@@ -1,6 +1,7 @@
 //! A field that remembers its certificate.
 
 use super::{Certificate, Enclosed, Stretch};
+use crate::of_field::of_field;
 use crate::{Breakpoints, Extinction, IntervalBounds, Majorant, Minorant, Tolerance};
 use std::sync::{Arc, OnceLock};
 
@@ -32,23 +33,8 @@ impl<F> Certified<F> {
     }
 }
 
-impl<F: Extinction> Extinction for Certified<F> {
-    #[inline]
-    fn sigma_t(&self, s: f64) -> f64 {
-        self.field.sigma_t(s)
-    }
-    #[inline]
-    fn length(&self) -> f64 {
-        self.field.length()
-    }
-}
-
-impl<F: Majorant> Majorant for Certified<F> {
-    #[inline]
-    fn majorant(&self) -> f64 {
-        self.field.majorant()
-    }
-}
+of_field!(Extinction, [F: Extinction] Certified<F>);
+of_field!(Majorant, [F: Majorant] Certified<F>);
 
 impl<F: Minorant> Minorant for Certified<F> {
     fn minorant(&self) -> f64 {

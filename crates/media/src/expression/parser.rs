@@ -39,31 +39,22 @@ type Parsed = Result<(), ExpressionError>;
 
 impl Parser<'_> {
     fn sum(&mut self) -> Parsed {
-        self.product()?;
-        loop {
-            let operation = match self.peek() {
-                Some('+') => Binary::Add,
-                Some('-') => Binary::Subtract,
-                _ => return Ok(()),
-            };
-            self.at += 1;
-            self.product()?;
-            self.program.binary(operation);
-        }
+        self.chain(Self::product, &[('+', Binary::Add), ('-', Binary::Subtract)])
     }
 
     fn product(&mut self) -> Parsed {
-        self.signed()?;
-        loop {
-            let operation = match self.peek() {
-                Some('*') => Binary::Multiply,
-                Some('/') => Binary::Divide,
-                _ => return Ok(()),
-            };
+        self.chain(Self::signed, &[('*', Binary::Multiply), ('/', Binary::Divide)])
+    }
+
+    /// Operands with operators of one precedence between them, from left to right.
+    fn chain(&mut self, operand: fn(&mut Self) -> Parsed, operators: &[(char, Binary)]) -> Parsed {
+        operand(self)?;
+        while let Some(&(_, operation)) = operators.iter().find(|(sign, _)| self.peek() == Some(*sign)) {
             self.at += 1;
-            self.signed()?;
+            operand(self)?;
             self.program.binary(operation);
         }
+        Ok(())
     }
 
     /// All recursion passes here: a parenthesis, an exponent.

@@ -57,12 +57,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for Jackknife {
 
 impl<F: Breakpoints> ClosedForm<F> for Jackknife {
     /// Mean, variance and look-ups; the higher central moments are not worked out.
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         let field = quadrature.field();
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let mut law = DeviationLaw::new(&self.comb, field, &prepared, tolerance);

@@ -64,30 +64,25 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
     /// All moments where the levels that matter can be summed. Where they cannot (a profile with kinks has some at
     /// every level), the variance alone, its tail continued as a geometric series, whose sum is the error that is
     /// stated; infinite where the levels add more and more.
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let field = quadrature.field();
         let prepared = self.comb().prepare(field, 0.0, field.length());
         let lookups = self.expected_lookups();
         let breaks = self.comb().folded_breakpoints(field, &prepared);
-        let noise = 8.0 * f64::EPSILON * (1.0 + optical_thickness.abs());
+        let noise = 8.0 * f64::EPSILON * (1.0 + tau.abs());
         let rough = |scale: Scale| {
             let absolute = if scale.log == 0.0 { noise * noise } else { 0.0 };
             let coarse = Tolerance { absolute, relative: 1e-3, ..tolerance };
             let greatest = Cell::new(f64::NEG_INFINITY);
             let square = adaptive_integral(1.0, &breaks, coarse, |u| {
                 let x = self.comb().thickness(field, &prepared, u);
-                greatest.set(greatest.get().max(optical_thickness - x));
+                greatest.set(greatest.get().max(tau - x));
                 let relative = scale.deviation(x);
                 [relative * relative]
             });
             (square.value[0], greatest.get())
         };
-        let mut scale = Scale { thickness: optical_thickness, log: 0.0 };
+        let mut scale = Scale { thickness: tau, log: 0.0 };
         let (mut square, greatest) = rough(scale);
         if greatest > MOST_EXPONENT {
             scale.log = greatest;

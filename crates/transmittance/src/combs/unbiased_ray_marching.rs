@@ -175,12 +175,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for UnbiasedRayMarching {
 
 impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
     /// Variance and look-ups; the higher central moments have no closed form here.
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        _optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
         let field = quadrature.field();
         let (mut log_square, mut error) = (0.0, 0.0);
         let mut before: Option<Prepared> = None;

@@ -236,15 +236,10 @@ impl<F: Majorant> TransmittanceEstimator<F> for Hybrid {
 }
 
 impl<F: Majorant + Breakpoints> ClosedForm<F> for Hybrid {
-    fn theory(
-        &self,
-        quadrature: &mut RayQuadrature<F>,
-        optical_thickness: f64,
-        tolerance: Tolerance,
-    ) -> Theory {
+    fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         match &self.choice {
-            Choice::Marching(estimator) => estimator.theory(quadrature, optical_thickness, tolerance),
-            Choice::Jittered(estimator) => estimator.theory(quadrature, optical_thickness, tolerance),
+            Choice::Marching(estimator) => estimator.theory(quadrature, tau, tolerance),
+            Choice::Jittered(estimator) => estimator.theory(quadrature, tau, tolerance),
         }
     }
 }
