@@ -1,5 +1,6 @@
 //! Adaptive ratio tracking: collisions at the rate of the null extinction found last (misso-2023).
 
+use crate::estimator::bounded;
 use crate::next_flight::of_variance;
 use crate::{ClosedForm, SignedProduct, Theory, TransmittanceEstimator, adaptive_law};
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
@@ -66,10 +67,7 @@ impl AdaptiveRatio {
 impl<F: Majorant> TransmittanceEstimator<F> for AdaptiveRatio {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let (majorant, length) = (field.majorant(), field.length());
-        if majorant <= 0.0 {
-            return 1.0; // nothing is admitted but a vacuum
-        }
+        let Some((majorant, length)) = bounded(field) else { return 1.0 };
         let mut weight = SignedProduct::ONE;
         // ∫ (rate − mu) over the way so far: one exponential per estimate.
         let mut exponent = 0.0;
@@ -113,15 +111,10 @@ impl<F: Majorant> ClosedForm<F> for AdaptiveRatio {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::{Broken, agrees, seed_ray, theory_of};
+    use crate::test_support::{Broken, agrees, seed_ray, theory_of, variate};
     use approx::assert_relative_eq;
     use fairflight_media::{Bounded, Constant, PiecewiseConstant};
     use fairflight_sources::{Scripted, Seeded};
-
-    /// The variate whose exponential is `depth`.
-    fn variate(depth: f64) -> f64 {
-        1.0 - (-depth).exp()
-    }
 
     #[test]
     fn a_walk_of_two_collisions_by_hand() {

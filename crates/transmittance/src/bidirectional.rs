@@ -20,6 +20,7 @@
 //!
 //! > w_1 … w_n / (2 + Σ_i exp(μ d_i)).
 
+use crate::estimator::bounded;
 use crate::next_flight::of_variance;
 use crate::{ClosedForm, SignedProduct, Theory, TransmittanceEstimator};
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
@@ -50,10 +51,7 @@ pub struct Unidirectional;
 impl<F: Majorant> TransmittanceEstimator<F> for Unidirectional {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let (majorant, length) = (field.majorant(), field.length());
-        if majorant <= 0.0 {
-            return 1.0; // nothing is admitted but a vacuum
-        }
+        let Some((majorant, length)) = bounded(field) else { return 1.0 };
         let mut weight = SignedProduct::ONE;
         let mut sum = 0.0;
         let mut s = 0.0;
@@ -77,10 +75,9 @@ impl<F: Majorant> TransmittanceEstimator<F> for Unidirectional {
 
 impl<F: Majorant> ClosedForm<F> for Unidirectional {
     fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
-        let (majorant, length) = (quadrature.field().majorant(), quadrature.field().length());
-        if majorant <= 0.0 {
+        let Some((majorant, length)) = bounded(quadrature.field()) else {
             return of_variance(0.0, 0.0, 0.0, 0.0);
-        }
+        };
         let grown = quadrature.cumulative(tolerance, |_, sigma_t| [sigma_t, sigma_t * sigma_t / majorant]);
         let b = |x: f64| 1.0 / (1.0 + (majorant * (length - x)).exp());
         // In units of exp(A(S)), and the exponents of p_k in those of their end.
@@ -168,10 +165,7 @@ fn score(weight: SignedProduct, gaps: f64, depth: f64) -> f64 {
 impl<F: Majorant> TransmittanceEstimator<F> for Bidirectional {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let (majorant, length) = (field.majorant(), field.length());
-        if majorant <= 0.0 {
-            return 1.0; // nothing is admitted but a vacuum
-        }
+        let Some((majorant, length)) = bounded(field) else { return 1.0 };
         let mut backward: SmallVec<[Point; 128]> = SmallVec::new();
         let mut point = Point::at(length);
         backward.push(point);
@@ -209,15 +203,10 @@ impl<F: Majorant> ClosedForm<F> for Bidirectional {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::{agrees, seed_ray, theory_of};
+    use crate::test_support::{agrees, seed_ray, theory_of, variate};
     use approx::assert_relative_eq;
     use fairflight_media::{Bounded, Constant, PiecewiseConstant};
     use fairflight_sources::{Scripted, Seeded};
-
-    /// The variate whose exponential is `depth`.
-    fn variate(depth: f64) -> f64 {
-        1.0 - (-depth).exp()
-    }
 
     #[test]
     fn one_walk_by_hand() {

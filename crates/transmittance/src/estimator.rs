@@ -1,6 +1,6 @@
 //! The law that every estimator of transmittance obeys.
 
-use fairflight_media::Extinction;
+use fairflight_media::{Extinction, Majorant};
 use fairflight_sources::UniformSource;
 
 /// A random estimate of the transmittance of a whole profile.
@@ -17,6 +17,13 @@ pub trait TransmittanceEstimator<F: Extinction> {
     /// Whether the estimator is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
     /// does not admit gets a biased estimate, not an error: watch the look-ups.
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool;
+}
+
+/// Majorant and length of a field; `None` where the majorant admits nothing but a vacuum, whose transmittance is 1.
+#[inline]
+pub(crate) fn bounded<F: Majorant>(field: &F) -> Option<(f64, f64)> {
+    let majorant = field.majorant();
+    if majorant <= 0.0 { None } else { Some((majorant, field.length())) }
 }
 
 /// A point at which a walk met matter, real or virtual.

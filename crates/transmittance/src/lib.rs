@@ -91,6 +91,6 @@ pub use ray_marching::{NoSteps, Offset, RayMarching};
 pub use regular::Regular;
 pub use residual_cells::{RateError, ResidualCells};
 pub use signed_product::SignedProduct;
-pub use theory::{ClosedForm, Theory};
+pub use theory::{ClosedForm, Theory, theory_on};
 pub use tracking::Tracking;
 pub use woodcock::Woodcock;

@@ -1,5 +1,6 @@
 //! Next-flight estimators: at each point of a walk, the probability to fly straight to the end.
 
+use crate::estimator::bounded;
 use crate::woodcock::expected_lookups;
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
@@ -69,10 +70,7 @@ impl NextFlight {
 impl<F: Majorant> TransmittanceEstimator<F> for NextFlight {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let (majorant, length) = (field.majorant(), field.length());
-        if majorant <= 0.0 {
-            return 1.0; // nothing is admitted but a vacuum
-        }
+        let Some((majorant, length)) = bounded(field) else { return 1.0 };
         let mut weight = SignedProduct::ONE;
         let mut sum = 0.0;
         let mut s = 0.0;
@@ -102,10 +100,9 @@ impl<F: Majorant> TransmittanceEstimator<F> for NextFlight {
 
 impl<F: Majorant> ClosedForm<F> for NextFlight {
     fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
-        let (majorant, length) = (quadrature.field().majorant(), quadrature.field().length());
-        if majorant <= 0.0 {
+        let Some((majorant, length)) = bounded(quadrature.field()) else {
             return of_variance(0.0, 0.0, 0.0, 0.0);
-        }
+        };
         let ratio = self.version == NextFlightVersion::Ratio;
         let lookups = if ratio { majorant * length } else { expected_lookups(quadrature, tolerance) };
         // dA/ds, and the variance that ending at random adds.
@@ -186,18 +183,13 @@ pub(crate) fn of_variance(scale: f64, variance: f64, error: f64, lookups: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::{agrees, seed_ray, theory_of};
+    use crate::test_support::{agrees, seed_ray, theory_of, variate};
     use approx::assert_relative_eq;
     use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant};
     use fairflight_sources::{Scripted, Seeded};
 
     const DELTA: NextFlight = NextFlight { version: NextFlightVersion::Delta };
     const RATIO: NextFlight = NextFlight { version: NextFlightVersion::Ratio };
-
-    /// The variate whose exponential is `depth`.
-    fn variate(depth: f64) -> f64 {
-        1.0 - (-depth).exp()
-    }
 
     #[test]
     fn a_walk_of_two_collisions_by_hand() {

@@ -1,11 +1,11 @@
 //! Closed forms on the ray of szirmay-kalos-2017 eq. 21 along z, against the same sums written down independently (numpy, midpoint
 //! rule with 2·10⁶ points, three digits).
 
-use crate::{ClosedForm, JitteredRatio, JitteredRatioInCells, ResidualCells, Theory, Tracking};
+use crate::{ClosedForm, JitteredRatio, JitteredRatioInCells, ResidualCells, Theory, Tracking, theory_on};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     AnalyticCosine, BoundCell, Breakpoints, Clip, Extinction, InCells, Majorant, OpticalThickness,
-    PiecewiseConstant, Ray, RayQuadrature, Tolerance, Vacuum,
+    PiecewiseConstant, Ray, Vacuum,
 };
 use glam::DVec3;
 
@@ -27,9 +27,8 @@ fn cells(ray: &Ray<AnalyticCosine>) -> Vec<BoundCell> {
 }
 
 fn theory<F: Breakpoints + OpticalThickness + Copy>(field: F, estimator: &impl ClosedForm<F>) -> Theory {
-    let tau = field.optical_thickness(0.0, field.length());
     let borders: Vec<f64> = (1..20).map(f64::from).collect();
-    estimator.theory(&mut RayQuadrature::new(field, &borders), tau, Tolerance::TIGHT)
+    theory_on(field, estimator, &borders)
 }
 
 /// Relative variance and look-ups, to half a unit of the last digit that was written down.

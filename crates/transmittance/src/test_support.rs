@@ -1,6 +1,6 @@
 //! Profiles and judgements that the tests of several estimators share.
 
-use crate::{ClosedForm, Theory, TransmittanceEstimator};
+use crate::{ClosedForm, Theory, TransmittanceEstimator, theory_on};
 use fairflight_media::{
     AnalyticCosine, Breakpoints, Counted, Extinction, OpticalThickness, PiecewiseLinear, Ray, RayQuadrature,
     Tolerance,
@@ -31,8 +31,12 @@ pub(crate) fn theory_of<F: OpticalThickness + Breakpoints, E: ClosedForm<F>>(
     field: F,
     estimator: &E,
 ) -> Theory {
-    let tau = field.optical_thickness(0.0, field.length());
-    estimator.theory(&mut RayQuadrature::new(field, &[]), tau, Tolerance::TIGHT)
+    theory_on(field, estimator, &[])
+}
+
+/// The variate whose exponential is `depth`.
+pub(crate) fn variate(depth: f64) -> f64 {
+    1.0 - (-depth).exp()
 }
 
 /// Mean and its standard error of `n` numbers.

@@ -1,7 +1,7 @@
 //! What is known of an estimator before a sample is drawn.
 
 use crate::HIGHEST_MOMENT;
-use fairflight_media::{Extinction, RayQuadrature, Tolerance};
+use fairflight_media::{Breakpoints, Extinction, OpticalThickness, RayQuadrature, Tolerance};
 
 /// The law of one estimate on one profile, in units of the transmittance T, so that nothing underflows with T.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,4 +60,15 @@ impl<F: Extinction, E: ClosedForm<F>> ClosedForm<F> for &E {
     fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         (**self).theory(quadrature, tau, tolerance)
     }
+}
+
+/// The theory of `estimator` on a field with an optical thickness in closed form, as exactly as quadrature can be; `also` are the breakpoints
+/// of what the estimator knows itself.
+pub fn theory_on<F: OpticalThickness + Breakpoints, E: ClosedForm<F>>(
+    field: F,
+    estimator: &E,
+    also: &[f64],
+) -> Theory {
+    let tau = field.optical_thickness(0.0, field.length());
+    estimator.theory(&mut RayQuadrature::new(field, also), tau, Tolerance::TIGHT)
 }

@@ -41,14 +41,8 @@ pub(super) fn combs() -> Vec<Check> {
     ] {
         checks.push(marching(&specimen, name, FREQUENT, (2, shape), 0.5, 1));
     }
-    checks.push(marching(
-        &specimen,
-        "comb_segments_matched",
-        SEGMENTS,
-        (1, CombShape::EndpointMatched),
-        0.5,
-        4,
-    ));
+    let matched = |teeth: u32| (teeth, CombShape::EndpointMatched);
+    checks.push(marching(&specimen, "comb_segments_matched", SEGMENTS, matched(1), 0.5, 4));
     checks.push(marching(&specimen, "comb_kettunen", RARE, (3, CombShape::Uniform), 0.9, 1));
     checks.push(tuned(&specimen, RARE, (2, CombShape::Uniform)));
     checks.extend(telescoping(&specimen, LEVELS, 2, Telescoping::matched_ratio(4.0)));
@@ -56,23 +50,9 @@ pub(super) fn combs() -> Vec<Check> {
 
     let specimen = Arc::new(Specimen::closed("eq21_seed_ray", analytic_cosine(DVec3::ZERO, DVec3::Z)));
     checks.push(marching(&specimen, "comb_uniform", FREQUENT, (15, CombShape::Uniform), 0.5, 1));
-    checks.push(marching(
-        &specimen,
-        "comb_endpoint_matched",
-        RESOLVED,
-        (25, CombShape::EndpointMatched),
-        0.5,
-        1,
-    ));
+    checks.push(marching(&specimen, "comb_endpoint_matched", RESOLVED, matched(25), 0.5, 1));
     checks.push(marching(&specimen, "comb_bernoulli_3", RESOLVED, (25, CombShape::Bernoulli3), 0.5, 1));
-    checks.push(marching(
-        &specimen,
-        "comb_segments_matched",
-        RESOLVED,
-        (5, CombShape::EndpointMatched),
-        0.5,
-        5,
-    ));
+    checks.push(marching(&specimen, "comb_segments_matched", RESOLVED, matched(5), 0.5, 5));
     // The difference of level k falls like 4^−k and is divided by its probability r (1 − r)^k: with r = 3/4 no level stands out, and
     // skewness and kurtosis exist. (With 0.9 they do not, and one estimate of a high level makes a run untestable.)
     checks.extend(telescoping(&specimen, RESOLVED, 20, 0.75));

@@ -20,6 +20,7 @@ mod vpl;
 
 pub(crate) use regular::FirstEstimate;
 
+use crate::function::Function;
 use crate::{hard_cases, twins};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_sources::named_seed;
@@ -110,6 +111,7 @@ pub enum Effort {
 }
 
 /// A named check.
+#[derive(Debug)]
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`, `hybrid/medium/estimator`,
     /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
@@ -125,7 +127,7 @@ pub struct Check {
     /// The medium, in words.
     pub medium: String,
     quick_samples: u64,
-    function: Box<dyn Fn(Run) -> CheckResult + Send + Sync>,
+    function: Function<CheckResult>,
 }
 
 impl Check {
@@ -144,7 +146,7 @@ impl Check {
             estimator: estimator.into(),
             medium: medium.into(),
             quick_samples,
-            function: Box::new(function),
+            function: Function::new(function),
         }
     }
 
@@ -179,13 +181,7 @@ impl Check {
     #[must_use]
     pub fn run(&self, effort: Effort, seed: u64, alpha: f64) -> CheckResult {
         let seed = named_seed(seed, &self.id);
-        (self.function)(Run { samples: self.samples(effort), seed, alpha })
-    }
-}
-
-impl std::fmt::Debug for Check {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Check").field("id", &self.id).field("law", &self.law).finish_non_exhaustive()
+        self.function.run(Run { samples: self.samples(effort), seed, alpha })
     }
 }
 

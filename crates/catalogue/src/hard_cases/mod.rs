@@ -21,6 +21,7 @@ mod voxel_faces;
 
 pub use by_kind::{ROWS, SAMPLERS, spared};
 
+use crate::function::Function;
 use fairflight_laws::{CheckResult, Run};
 
 /// What came of a case.
@@ -74,6 +75,7 @@ fn number(value: f64) -> String {
 }
 
 /// A hard case: one row of the stability table.
+#[derive(Debug)]
 pub struct HardCase {
     /// The number of its row in the list.
     pub number: u32,
@@ -93,7 +95,7 @@ pub struct HardCase {
     pub refusal: bool,
     /// N of a judged run; 0 for a deterministic evaluation.
     pub samples: u64,
-    function: Box<dyn Fn(Run) -> Outcome + Send + Sync>,
+    function: Function<Outcome>,
 }
 
 impl HardCase {
@@ -115,7 +117,7 @@ impl HardCase {
             of_table: false,
             refusal: false,
             samples: 0,
-            function: Box::new(function),
+            function: Function::new(function),
         }
     }
 
@@ -153,16 +155,7 @@ impl HardCase {
     /// Evaluates the case.
     #[must_use]
     pub fn run(&self, run: Run) -> Outcome {
-        (self.function)(run)
-    }
-}
-
-impl std::fmt::Debug for HardCase {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("HardCase")
-            .field("number", &self.number)
-            .field("title", &self.title)
-            .finish_non_exhaustive()
+        self.function.run(run)
     }
 }
 

@@ -141,9 +141,11 @@ fn two_wavelengths(ratio: f64, run: Run) -> Outcome {
 pub(super) fn cases() -> Vec<HardCase> {
     const SAMPLES: u64 = 20_000;
     const EXACT: &str = "1 for each channel (a furnace)";
-    let average = |ahead| SpectralTracking::new(AverageScheme, constant(1.0, ahead));
-    let hero = |ahead| HeroWavelength::new(constant(1.0, ahead));
-    let separate = |ahead| SeparateSolve::new(ONE_IS_CLEAR.map(|sigma| constant(sigma, ahead)));
+    let of_furnace = |estimator: &'static str, kind, judged: fn(Run) -> Outcome| {
+        let name = estimator.trim_start_matches("spectral flight, ");
+        let title = format!("sigma_t = 0 in one channel, 1 in the others, a furnace, {name}");
+        HardCase::statistical(6, title, estimator, EXACT, SAMPLES, judged).about([kind])
+    };
     let mut cases = vec![
         HardCase::deterministic(
             6,
@@ -154,33 +156,18 @@ pub(super) fn cases() -> Vec<HardCase> {
             exact_furnace,
         )
         .about(["spectral_tracking"]),
-        HardCase::statistical(
-            6,
-            "sigma_t = 0 in one channel, 1 in the others, a furnace, average scheme",
-            "spectral flight, average scheme",
-            EXACT,
-            SAMPLES,
-            move |run| judged_furnace(run, Some(3.0), true, |source| furnace(average, source)),
-        )
-        .about(["spectral_tracking"]),
-        HardCase::statistical(
-            6,
-            "sigma_t = 0 in one channel, 1 in the others, a furnace, hero wavelength",
-            "spectral flight, hero wavelength",
-            EXACT,
-            SAMPLES,
-            move |run| judged_furnace(run, Some(3.0), true, |source| furnace(hero, source)),
-        )
-        .about(["hero_wavelength"]),
-        HardCase::statistical(
-            6,
-            "sigma_t = 0 in one channel, 1 in the others, a furnace, separate solve",
-            "spectral flight, separate solve",
-            EXACT,
-            SAMPLES,
-            move |run| judged_furnace(run, Some(3.0), true, |source| furnace(separate, source)),
-        )
-        .about(["separate_solve"]),
+        of_furnace("spectral flight, average scheme", "spectral_tracking", |run| {
+            let average = |ahead| SpectralTracking::new(AverageScheme, constant(1.0, ahead));
+            judged_furnace(run, Some(3.0), true, |source| furnace(average, source))
+        }),
+        of_furnace("spectral flight, hero wavelength", "hero_wavelength", |run| {
+            let hero = |ahead| HeroWavelength::new(constant(1.0, ahead));
+            judged_furnace(run, Some(3.0), true, |source| furnace(hero, source))
+        }),
+        of_furnace("spectral flight, separate solve", "separate_solve", |run| {
+            let separate = |ahead| SeparateSolve::new(ONE_IS_CLEAR.map(|sigma| constant(sigma, ahead)));
+            judged_furnace(run, Some(3.0), true, |source| furnace(separate, source))
+        }),
     ];
     for ratio in [1.9, 2.0, 2.1] {
         cases.push(HardCase {

@@ -1,6 +1,6 @@
 //! Mistakes of estimators that walk from stratum to stratum.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin, freeflight};
 use fairflight_freeflight::{Flight, FreeFlight, JitteredFlight};
 use fairflight_laws::freeflight::Weights;
@@ -76,7 +76,7 @@ pub(super) fn twins() -> Vec<Twin> {
             (20_000, Evident::Mean { z: 73.3 }),
             |run| {
                 let field = half();
-                let right = theory_of(&field, &JitteredRatio::new(1.0).expect(LAWFUL), &[]);
+                let right = theory_on(field, &JitteredRatio::new(1.0).expect(LAWFUL), &[]);
                 judged(&field, &ContinuesTooRarely, right, run)
             },
         ).about(["jittered_ratio"]),

@@ -1,6 +1,6 @@
 //! Mistakes in the weight of one collision, each in one line of a collision model or of the walk.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Rejection, Twin};
 use fairflight_collision::{Albedo, Branch, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_laws::{Run, collision};
@@ -70,7 +70,7 @@ fn wrong_weight(weight: fn(f64) -> f64, sampling: f64, run: Run) -> Rejection {
     let model = WrongWeight(weight);
     let exact = collision::check(&model, 0.0, &[1.0 / sampling]);
     let sampling = Constant::new(sampling, 2.0).expect(LAWFUL);
-    let theory = theory_of(&field(), &Tracking::new(right(), Vacuum::new(2.0), sampling), &[]);
+    let theory = theory_on(field(), &Tracking::new(right(), Vacuum::new(2.0), sampling), &[]);
     let rejection = judged(&field(), &Tracking::new(model, Vacuum::new(2.0), sampling), theory, run);
     Rejection { rejected: rejection.rejected && exact.is_err(), ..rejection }
 }
@@ -84,7 +84,7 @@ fn outside_the_terminating_domain(sigma_t: f64, length: f64, sampling: f64, run:
     let field = Constant::new(sigma_t, length).expect(LAWFUL);
     let sampling = Constant::new(sampling, length).expect(LAWFUL);
     let of = |version| Tracking::new(single(version, 0.0), Vacuum::new(length), sampling);
-    let theory = theory_of(&field, &of(Version::NonTerminating), &[]);
+    let theory = theory_on(field, &of(Version::NonTerminating), &[]);
     let refused = !TransmittanceEstimator::admits(&of(Version::Terminating), &field, 0.0, sigma_t);
     let rejection = judged(&field, &of(Version::Terminating), theory, run);
     // A watched run refuses it before any statistics.
@@ -141,7 +141,7 @@ pub(super) fn twins() -> Vec<Twin> {
             |run| {
                 let sampling = Constant::new(0.8, 2.0).expect(LAWFUL);
                 let model = single(Version::NonTerminating, 0.5);
-                let theory = theory_of(&field(), &Tracking::new(model, Vacuum::new(2.0), sampling), &[]);
+                let theory = theory_on(field(), &Tracking::new(model, Vacuum::new(2.0), sampling), &[]);
                 judged(&field(), &StopsBelowZero { model, sampling }, theory, run)
             },
         ).about(["single_particle"]),

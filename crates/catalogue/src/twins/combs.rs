@@ -1,6 +1,6 @@
 //! Mistakes in estimators made of combs, most of them found in public code.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin};
 use fairflight_media::{AnalyticCosine, Clip, Extinction, PiecewiseConstant, PiecewiseLinear, Ray};
 use fairflight_sources::UniformSource;
@@ -90,7 +90,7 @@ fn on_two_values(
         let comb = Comb::new(1, CombShape::Uniform).expect(LAWFUL);
         let roulette = Roulette::new(stop_probability).expect(LAWFUL);
         let field = two_values(values);
-        let theory = theory_of(&field, &UnbiasedRayMarching::new(comb, roulette), &[]);
+        let theory = theory_on(&field, &UnbiasedRayMarching::new(comb, roulette), &[]);
         judged(&field, &wrong(Wrong::right(comb, roulette)), theory, run)
     })
     .about(["unbiased_ray_marching"])
@@ -240,7 +240,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let clip: Clip = clip.expect(LAWFUL).expect(LAWFUL);
                 let ray = Ray::new(AnalyticCosine::new(1.0).expect(LAWFUL), &clip);
                 let comb = Comb::new(12, CombShape::Uniform).expect(LAWFUL);
-                let theory = theory_of(&ray, &UnbiasedRayMarching::new(comb, Roulette::KETTUNEN), &[]);
+                let theory = theory_on(ray, &UnbiasedRayMarching::new(comb, Roulette::KETTUNEN), &[]);
                 judged(&ray, &ShiftedByALength { teeth: 12 }, theory, run)
             },
         ).about(["unbiased_ray_marching"]),
@@ -254,7 +254,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let level_ratio = 0.65;
                 let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
                 let right = Telescoping::new(2, level_ratio, CombShape::EndpointMatched).expect(LAWFUL);
-                let theory = theory_of(&tent, &right, &[]);
+                let theory = theory_on(&tent, &right, &[]);
                 judged(&tent, &EvenHalfOnly { comb: right.comb(), level_ratio }, theory, run)
             },
         ).about(["telescoping"]),

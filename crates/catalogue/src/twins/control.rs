@@ -1,6 +1,6 @@
 //! Mistakes with the control.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
@@ -74,7 +74,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let control = Constant::new(0.5, 4.0).expect(LAWFUL);
                 let sampling = Constant::new(2.0, 4.0).expect(LAWFUL);
                 let right = Tracking::new(double_particle(), control, sampling);
-                let theory = theory_of(&field, &right, &[]);
+                let theory = theory_on(&field, &right, &[]);
                 let twin = Tracking::new(double_particle(), WithoutThickness(control), sampling);
                 judged(&field, &twin, theory, run)
             },
@@ -93,7 +93,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let control = Explorers::through(&field, 4).expect(LAWFUL);
                 let also = control.breakpoints();
                 let right = Tracking::new(double_particle(), control, sampling);
-                let theory = theory_of(&field, &right, &also);
+                let theory = theory_on(&field, &right, &also);
                 judged(&field, &FitsItsOwnWalk { sampling }, theory, run)
             },
         )

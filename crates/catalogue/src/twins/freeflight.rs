@@ -95,18 +95,7 @@ pub(super) fn judged<
 ) -> Rejection {
     let mut quadrature = RayQuadrature::new(field, also);
     let expected = FlightExpectation::new(&mut quadrature, right, weights, Tolerance::TIGHT);
-    match check_flights(field, twin, &expected, run) {
-        Ok(evidence) => {
-            let verdict = evidence.verdict(shows);
-            Rejection {
-                rejected: evidence.holds() == Some(false),
-                mean_z: verdict.and_then(|verdict| verdict.mean_z),
-                variance_z: None,
-                reason: verdict.map_or(String::new(), |verdict| verdict.reason.clone()),
-            }
-        }
-        Err(refusal) => Rejection::exact(true, refusal.to_string()),
-    }
+    Rejection::of_flights(check_flights(field, twin, &expected, run), shows)
 }
 
 fn without_energy(taken_for: [fn(f64) -> f64; 2], shows: &str, run: Run) -> Rejection {

@@ -1,6 +1,6 @@
 //! Mistakes in raab-2008 algorithm 2, both in where the first collision lies.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin};
 use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
 use fairflight_sources::UniformSource;
@@ -70,7 +70,7 @@ fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> 
     Twin::new("line integral", id, mistake, profile, (50_000, Evident::Mean { z }), move |run| {
         let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.1]).expect(LAWFUL);
         let right = LineIntegral::new(4).expect(LAWFUL);
-        let theory = theory_of(&field, &right, &[]);
+        let theory = theory_on(&field, &right, &[]);
         judged(&field, &WrongFirstStep { splits: 4, majorant: 1.0, first }, theory, run)
     })
     .about(["line_integral"])

@@ -1,7 +1,8 @@
 //! Mistakes with a majorant.
 
-use super::trial::{LAWFUL, judged_as_coin, theory_of};
+use super::trial::{LAWFUL, judged_with_scores, theory_on};
 use super::{Evident, Rejection, Twin};
+use fairflight_laws::scores;
 use fairflight_laws::transmittance::Admitted;
 use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, Watched};
 use fairflight_sources::{Scripted, UniformSource};
@@ -37,14 +38,16 @@ pub(super) fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 43.5 }),
             |run| {
                 let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.5, 1.5]).expect(LAWFUL);
-                let theory = theory_of(&field, &Woodcock, &[]);
-                let statistical = judged_as_coin(&field, &TooLow(1.1), theory, run);
+                let theory = theory_on(&field, &Woodcock, &[]);
+                let statistical = judged_with_scores(&field, &TooLow(1.1), (theory, scores::woodcock), run);
                 // A watched run does not even need statistics: a first step of 1.5/1.1 ends where sigma_t is 1.5.
                 let claimed = Bounded::new(&field, 1.1).expect(LAWFUL);
                 let admitted = Admitted { field: claimed, estimator: Woodcock };
                 let watched = Watched::new(claimed, admitted);
                 Woodcock.estimate(&watched, &mut Scripted::new([-(-1.5_f64).exp_m1(), 0.0]));
-                Rejection { rejected: statistical.rejected && watched.violation().is_some(), ..statistical }
+                let rejected = statistical.rejected && watched.violation().is_some();
+                // Of scores of 0 and 1 the variance says what the mean does.
+                Rejection { rejected, variance_z: None, ..statistical }
             },
         ).about(["woodcock"]),
         Twin::new(

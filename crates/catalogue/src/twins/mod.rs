@@ -22,7 +22,10 @@ mod trial;
 mod variance;
 mod vpl;
 
+use crate::function::Function;
 use fairflight_laws::Run;
+use fairflight_laws::freeflight::{FlightEvidence, FlightRefusal};
+use fairflight_stats::Verdict;
 
 /// What a check said of a twin.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +44,28 @@ impl Rejection {
     /// An exact assertion.
     fn exact(rejected: bool, reason: impl Into<String>) -> Self {
         Self { rejected, mean_z: None, variance_z: None, reason: reason.into() }
+    }
+
+    /// The verdict on a mean.
+    fn of_mean(verdict: Verdict) -> Self {
+        let Verdict { sound, mean_z, reason, .. } = verdict;
+        Self { rejected: sound == Some(false), mean_z, variance_z: None, reason }
+    }
+
+    /// The evidence of flights, told by the score `shows`.
+    fn of_flights(evidence: Result<FlightEvidence, FlightRefusal>, shows: &str) -> Self {
+        match evidence {
+            Ok(evidence) => {
+                let verdict = evidence.verdict(shows);
+                Self {
+                    rejected: evidence.holds() == Some(false),
+                    mean_z: verdict.and_then(|verdict| verdict.mean_z),
+                    variance_z: None,
+                    reason: verdict.map_or(String::new(), |verdict| verdict.reason.clone()),
+                }
+            }
+            Err(refusal) => Self::exact(true, refusal.to_string()),
+        }
     }
 }
 
@@ -62,6 +87,7 @@ pub enum Evident {
 }
 
 /// A wrong twin.
+#[derive(Debug)]
 pub struct Twin {
     /// Unique.
     pub id: &'static str,
@@ -77,7 +103,7 @@ pub struct Twin {
     pub samples: u64,
     /// How it is found out.
     pub evident: Evident,
-    function: Box<dyn Fn(Run) -> Rejection + Send + Sync>,
+    function: Function<Rejection>,
 }
 
 impl Twin {
@@ -89,7 +115,16 @@ impl Twin {
         (samples, evident): (u64, Evident),
         function: impl Fn(Run) -> Rejection + Send + Sync + 'static,
     ) -> Self {
-        Self { of, kinds: Vec::new(), id, mistake, profile, samples, evident, function: Box::new(function) }
+        Self {
+            of,
+            kinds: Vec::new(),
+            id,
+            mistake,
+            profile,
+            samples,
+            evident,
+            function: Function::new(function),
+        }
     }
 
     /// The same, which the law of these kinds rejects.
@@ -101,13 +136,7 @@ impl Twin {
     /// Tries the twin.
     #[must_use]
     pub fn run(&self, run: Run) -> Rejection {
-        (self.function)(run)
-    }
-}
-
-impl std::fmt::Debug for Twin {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Twin").field("id", &self.id).field("evident", &self.evident).finish_non_exhaustive()
+        self.function.run(run)
     }
 }
 

@@ -4,7 +4,7 @@
 //! A walk in space has no closed variance, so that the z that a twin states is measured. What rejects a twin is the range of the right
 //! estimates, derived beside each: it bounds what a sample can lack.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Rejection, Twin};
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{single_scattering, slab};
@@ -312,7 +312,7 @@ pub(super) fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 64.1 }),
             |run| {
                 let field = PiecewiseConstant::new(vec![0.0, 1.9, 2.0], vec![0.4, 1.0]).expect(LAWFUL);
-                let theory = theory_of(&field, &LineIntegral::new(4).expect(LAWFUL), &[]);
+                let theory = theory_on(&field, &LineIntegral::new(4).expect(LAWFUL), &[]);
                 judged(&field, &StratifiesEveryStep { splits: 4, majorant: 1.0 }, theory, run)
             },
         ).about(["line_integral"]),

@@ -33,15 +33,7 @@ fn judged(run: Run) -> Rejection {
         f64::from(u8::from(matches!(flight, Flight::Escaped { .. })))
     });
     match moments {
-        Ok(moments) => {
-            let verdict = judge(&moments, &exact, run.alpha);
-            Rejection {
-                rejected: verdict.sound == Some(false),
-                mean_z: verdict.mean_z,
-                variance_z: None,
-                reason: verdict.reason,
-            }
-        }
+        Ok(moments) => Rejection::of_mean(judge(&moments, &exact, run.alpha)),
         Err(error) => Rejection::exact(false, error.to_string()),
     }
 }

@@ -1,6 +1,6 @@
 //! Mistakes with the sampling extinction.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
@@ -54,7 +54,7 @@ pub(super) fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 87.0 }),
             move |run| {
                 let rate = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.5]).expect(LAWFUL);
-                let theory = theory_of(&field(), &tracking(rate.clone()), &rate.breakpoints());
+                let theory = theory_on(field(), &tracking(rate.clone()), &rate.breakpoints());
                 judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
             },
         )
@@ -68,7 +68,7 @@ pub(super) fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 78.8 }),
             move |run| {
                 let twin = tracking(with_a_hole());
-                let theory = theory_of(&field(), &twin, &with_a_hole().breakpoints());
+                let theory = theory_on(field(), &twin, &with_a_hole().breakpoints());
                 judged(&field(), &twin, theory, run)
             },
         )

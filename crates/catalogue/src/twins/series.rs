@@ -1,6 +1,6 @@
 //! Mistakes in next flight, in the power series and in adaptive ratio tracking.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin};
 use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
 use fairflight_sources::UniformSource;
@@ -99,7 +99,7 @@ pub(super) fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 86.0 }),
             |run| {
                 let right = PSeries::new(PSeriesVersion::Cmf, 4.0).expect(LAWFUL);
-                judged(&field(), &CappedOrder { pivot: 4.0 }, theory_of(&field(), &right, &[]), run)
+                judged(&field(), &CappedOrder { pivot: 4.0 }, theory_on(field(), &right, &[]), run)
             },
         ).about(["p_series"]),
         // The term of the start is not random: exp(−2·1.25)/exp(−1.25) = 0.287 of T is missing, and the variance is right.
@@ -112,7 +112,7 @@ pub(super) fn twins() -> Vec<Twin> {
             |run| {
                 let right = NextFlight::new(NextFlightVersion::Ratio);
                 let field = bounded(1.25);
-                judged(&field, &WithoutTheStart, theory_of(&field, &right, &[]), run)
+                judged(&field, &WithoutTheStart, theory_on(&field, &right, &[]), run)
             },
         ).about(["next_flight"]),
         // Every factor is then (μ − σ_t)/(μ − σ_t) = 1 here. In (2) of `AdaptiveRatio` r no longer cancels: behind a collision
@@ -127,7 +127,7 @@ pub(super) fn twins() -> Vec<Twin> {
             |run| {
                 let right = AdaptiveRatio::new(0.1).expect(LAWFUL);
                 let field = bounded(1.25);
-                judged(&field, &KnowsTheLookup { floor: 0.1 }, theory_of(&field, &right, &[]), run)
+                judged(&field, &KnowsTheLookup { floor: 0.1 }, theory_on(&field, &right, &[]), run)
             },
         ).about(["adaptive_ratio"]),
     ]

@@ -16,20 +16,16 @@ use fairflight_media::{
 use fairflight_sources::UniformSource;
 
 type Spectrum = Scaled<Constant, 2>;
+type Flight = SpectralFlight<2>;
 
 /// Spectral tracking by the max scheme with other weights: `weigh` has the ratio of the event, and the sizes of it and of the
 /// other one.
 struct Weighing(fn(f64, f64, f64) -> f64);
 
 impl SpectralFreeFlight<Spectrum, 2> for Weighing {
-    fn sample_from(
-        &self,
-        field: &Spectrum,
-        incoming: [f64; 2],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<2> {
+    fn sample_from(&self, field: &Spectrum, past: [f64; 2], source: &mut impl UniformSource) -> Flight {
         let sampling = Constant::new(1.0, field.length()).expect(LAWFUL);
-        let (mut weights, mut s) = (incoming, 0.0);
+        let (mut weights, mut s) = (past, 0.0);
         while let Some(next) = sampling.invert(s, source.next_exponential()) {
             s = next;
             let ratios = field.sigma_t(s).map(|sigma| sigma / sampling.sigma_t(s));
@@ -37,11 +33,11 @@ impl SpectralFreeFlight<Spectrum, 2> for Weighing {
             if source.next_uniform() * (collides + passes) < collides {
                 // right: (collides + passes) ratio / collides
                 let weights = std::array::from_fn(|l| weights[l] * (self.0)(ratios[l], collides, passes));
-                return SpectralFlight::Collided { distance: s, weights };
+                return Flight::Collided { distance: s, weights };
             }
             weights = std::array::from_fn(|l| weights[l] * (self.0)(1.0 - ratios[l], passes, collides));
         }
-        SpectralFlight::Escaped { weights }
+        Flight::Escaped { weights }
     }
     fn admits(&self, _field: &Spectrum, _s: f64, _sigma_t: &[f64; 2]) -> bool {
         true
@@ -52,27 +48,22 @@ impl SpectralFreeFlight<Spectrum, 2> for Weighing {
 struct ForgetsTheCollision;
 
 impl SpectralFreeFlight<Spectrum, 2> for ForgetsTheCollision {
-    fn sample_from(
-        &self,
-        field: &Spectrum,
-        incoming: [f64; 2],
-        source: &mut impl UniformSource,
-    ) -> SpectralFlight<2> {
+    fn sample_from(&self, field: &Spectrum, past: [f64; 2], source: &mut impl UniformSource) -> Flight {
         let majorant = Constant::new(1.0, field.length()).expect(LAWFUL);
         let hero = usize::from(source.next_uniform() >= 0.5);
-        let (mut weights, mut s) = (incoming, 0.0);
+        let (mut weights, mut s) = (past, 0.0);
         while let Some(next) = majorant.invert(s, source.next_exponential()) {
             s = next;
             let ratios = field.sigma_t(s);
             if source.next_uniform() < ratios[hero] {
                 // right: the ratios enter here as 1 − r do below
-                return SpectralFlight::Collided { distance: s, weights };
+                return Flight::Collided { distance: s, weights };
             }
             let after: [f64; 2] = std::array::from_fn(|l| weights[l] * (1.0 - ratios[l]));
             let probability = (after[0] + after[1]) / (weights[0] + weights[1]);
             weights = after.map(|weight| weight / probability);
         }
-        SpectralFlight::Escaped { weights }
+        Flight::Escaped { weights }
     }
     fn admits(&self, _field: &Spectrum, _s: f64, _sigma_t: &[f64; 2]) -> bool {
         true
@@ -94,18 +85,7 @@ fn judged<E: for<'f> ClosedForm<Wavelength<&'f Spectrum, 2>>, T: SpectralFreeFli
     let field = spectrum();
     let mut quadrature = RayQuadrature::new(Wavelength::new(&field, 0).expect(LAWFUL), &[]);
     let expected = FlightExpectation::new(&mut quadrature, right, weights, Tolerance::TIGHT);
-    match check_flights(&field, twin, 0, &expected, run) {
-        Ok(evidence) => {
-            let verdict = evidence.verdict("collided");
-            Rejection {
-                rejected: evidence.holds() == Some(false),
-                mean_z: verdict.and_then(|verdict| verdict.mean_z),
-                variance_z: None,
-                reason: verdict.map_or(String::new(), |verdict| verdict.reason.clone()),
-            }
-        }
-        Err(refusal) => Rejection::exact(true, refusal.to_string()),
-    }
+    Rejection::of_flights(check_flights(&field, twin, 0, &expected, run), "collided")
 }
 
 fn weighed(weigh: fn(f64, f64, f64) -> f64, run: Run) -> Rejection {

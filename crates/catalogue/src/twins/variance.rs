@@ -1,6 +1,6 @@
 //! A wrong closed form: the estimator is right, its theory is not. The test of the variance must say so.
 
-use super::trial::{LAWFUL, judged, theory_of};
+use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Twin};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
 use fairflight_media::{Constant, PiecewiseConstant, RayQuadrature, Tolerance};
@@ -41,7 +41,7 @@ pub(super) fn twins() -> Vec<Twin> {
                     (Constant::new(0.5, 2.0).expect(LAWFUL), Constant::new(8.0, 2.0).expect(LAWFUL));
                 let model = DoubleParticle { albedo: Albedo::default() };
                 let estimator = Tracking::new(model, control, sampling);
-                let right = theory_of(&field, &estimator, &[]);
+                let right = theory_on(&field, &estimator, &[]);
                 let wrong = of_the_whole_extinction(&field, model, 8.0, right);
                 judged(&field, &estimator, wrong, run)
             },

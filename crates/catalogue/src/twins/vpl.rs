@@ -135,13 +135,7 @@ fn tried(scene: &Local, mistake: Mistake, run: Run) -> Rejection {
         Ok(measured) => measured,
         Err(error) => return Rejection::exact(true, error.to_string()),
     };
-    let verdict = judge(&measured, &reference, run.alpha);
-    Rejection {
-        rejected: verdict.sound == Some(false),
-        mean_z: verdict.mean_z,
-        variance_z: None,
-        reason: verdict.reason,
-    }
+    Rejection::of_mean(judge(&measured, &reference, run.alpha))
 }
 
 /// A second light below the floor: what lies there is bright.

@@ -148,7 +148,7 @@ impl<F: Extinction + Clone, C: InvertOpticalThickness, R: InvertOpticalThickness
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_support::{VERSIONS, constant};
+    use crate::test_support::{VERSIONS, assert_law, constant};
     use approx::assert_relative_eq;
     use fairflight_media::PiecewiseConstant;
     use fairflight_sources::Scripted;
@@ -185,12 +185,7 @@ mod tests {
             (Version::Adaptive, 0.1, 0.4),
         ] {
             let tracking = DecompositionTracking::new(version, constant(control), constant(sampling));
-            let mut quadrature = RayQuadrature::new(&field, &[]);
-            let tau = 0.58_f64;
-            let found = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
-            assert_relative_eq!(found, -(-tau).exp_m1(), max_relative = 1e-11);
-            let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[0];
-            assert_relative_eq!(escaped, (-tau).exp(), max_relative = 1e-12);
+            assert_law(&field, &tracking, 0.58);
         }
     }
 

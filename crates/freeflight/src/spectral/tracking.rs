@@ -124,7 +124,7 @@ impl<
 mod tests {
     use super::*;
     use crate::spectral::{AverageScheme, MaxScheme};
-    use crate::test_support::{constant, spectrum};
+    use crate::test_support::{assert_law, constant, spectrum};
     use crate::{ClosedForm, Flight};
     use approx::assert_relative_eq;
     use fairflight_media::{PiecewiseConstant, Profiles, RayQuadrature, Tolerance, Wavelength};
@@ -188,12 +188,7 @@ mod tests {
         for (control, sampling) in [(0.0, 2.0), (0.2, 1.8), (0.6, 0.9)] {
             let tracking = SpectralTracking::with_control(MaxScheme, constant(control), constant(sampling));
             for (l, tau) in [0.58_f64, 1.46].into_iter().enumerate() {
-                let wavelength = Wavelength::new(&field, l).unwrap();
-                let mut quadrature = RayQuadrature::new(wavelength, &[]);
-                let found = tracking.weights().collided(&mut quadrature, Tolerance::TIGHT, &|_| 1.0).value[0];
-                assert_relative_eq!(found, -(-tau).exp_m1(), max_relative = 1e-11);
-                let escaped = tracking.weights().escaped(&mut quadrature, Tolerance::TIGHT)[0];
-                assert_relative_eq!(escaped, (-tau).exp(), max_relative = 1e-12);
+                assert_law(Wavelength::new(&field, l).unwrap(), &tracking, tau);
             }
         }
     }

@@ -71,21 +71,16 @@ fn forward() -> HenyeyGreenstein {
 }
 
 fn eq21<P>(radius: f64, phase: P) -> Volume<AnalyticCosine, P, f64> {
-    Volume {
-        medium: AnalyticCosine::new(1.0).expect(LAWFUL),
-        bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), radius).expect(LAWFUL),
-        albedo: 1.0,
-        phase,
-    }
+    ball(AnalyticCosine::new(1.0).expect(LAWFUL), radius, phase)
 }
 
 fn homogeneous<P>(radius: f64, phase: P) -> Volume<Homogeneous, P, f64> {
-    Volume {
-        medium: Homogeneous::new(1.0).expect(LAWFUL),
-        bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), radius).expect(LAWFUL),
-        albedo: 1.0,
-        phase,
-    }
+    ball(Homogeneous::new(1.0).expect(LAWFUL), radius, phase)
+}
+
+fn ball<M, P>(medium: M, radius: f64, phase: P) -> Volume<M, P, f64> {
+    let bounds = Bounds::sphere(dvec3(0.0, 0.0, 10.0), radius).expect(LAWFUL);
+    Volume { medium, bounds, albedo: 1.0, phase }
 }
 
 /// A ball half a unit around (0, 0, 4π), where eq. 21 is dense: σ_t is 2/3 in the middle, up to 0.7, and down to 0.07.

@@ -184,17 +184,18 @@ fn by_line<M: LineThickness + Send + Sync + 'static, P: PhaseFunction + Send + S
     .about(["single_scattering", "line_integral"])
 }
 
+/// Eq. 21 in a ball.
+fn eq21<P>(albedo: f64, phase: P) -> Volume<AnalyticCosine, P, f64> {
+    let bounds = Bounds::sphere(dvec3(0.0, 0.0, 10.0), 3.0).expect(LAWFUL);
+    Volume { medium: AnalyticCosine::new(1.0).expect(LAWFUL), bounds, albedo, phase }
+}
+
 /// A point light in eq. 21, where that is dense, one unit beside one of the rays, before a background.
 fn point_inside() -> Scene<AnalyticCosine, HenyeyGreenstein> {
     Scene {
         name: "eq21 point inside",
         samples: 50_000,
-        volume: Volume {
-            medium: AnalyticCosine::new(1.0).expect(LAWFUL),
-            bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), 3.0).expect(LAWFUL),
-            albedo: 0.8,
-            phase: HenyeyGreenstein::new(0.5).expect(LAWFUL),
-        },
+        volume: eq21(0.8, HenyeyGreenstein::new(0.5).expect(LAWFUL)),
         lights: Lights {
             background: Background { constant: 0.05, maps: Vec::new() },
             sources: vec![Source::point(dvec3(0.9, 0.5, 11.1), 10.0).expect(LAWFUL)],
@@ -212,12 +213,7 @@ fn camera_inside() -> Scene<AnalyticCosine, Rayleigh> {
     Scene {
         name: "eq21 camera inside",
         samples: 62_000,
-        volume: Volume {
-            medium: AnalyticCosine::new(1.0).expect(LAWFUL),
-            bounds: Bounds::sphere(dvec3(0.0, 0.0, 10.0), 3.0).expect(LAWFUL),
-            albedo: 0.9,
-            phase: Rayleigh,
-        },
+        volume: eq21(0.9, Rayleigh),
         lights: Lights {
             background: Background::dark(),
             sources: vec![Source::point(dvec3(3.0, 2.5, 9.0), 50.0).expect(LAWFUL)],

@@ -21,25 +21,22 @@ use fairflight_transmittance::{
 /// profile makes it. A macro, because no bound says of a type that it is an estimator for every lifetime of an observed field.
 macro_rules! estimator {
     ($kind:literal, $name:literal, above: $above:literal, below: $below:literal, |$profile:pat_param| $make:expr) => {
-        Subject {
-            kind: $kind,
-            name: $name,
-            above: $above,
-            below: $below,
-            is_tried: |_| true,
-            examine: |profile, run| {
+        Subject::new(
+            ($kind, $name),
+            ($above, $below),
+            |profile, run| {
                 let $profile = profile;
                 law(profile, &$make, run)
             },
-            watch: |profile| {
+            |profile| {
                 let $profile = profile;
                 watched(profile, &$make)
             },
-            draw: |profile, source| {
+            |profile, source| {
                 let $profile = profile;
                 $make.estimate(profile, source).is_finite()
             },
-        }
+        )
     };
 }
 

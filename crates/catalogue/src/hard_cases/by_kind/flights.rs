@@ -16,25 +16,22 @@ use fairflight_media::{Extinction, RayQuadrature, Tolerance};
 /// As the macro of estimators; `weights` says what is known of the weights of its flights.
 macro_rules! flight {
     ($kind:literal, $name:literal, above: $above:literal, below: $below:literal, $weights:expr, |$profile:pat_param| $make:expr) => {
-        Subject {
-            kind: $kind,
-            name: $name,
-            above: $above,
-            below: $below,
-            is_tried: |_| true,
-            examine: |profile, run| {
+        Subject::new(
+            ($kind, $name),
+            ($above, $below),
+            |profile, run| {
                 let $profile = profile;
                 law(profile, &$make, $weights, run)
             },
-            watch: |profile| {
+            |profile| {
                 let $profile = profile;
                 watched(profile, &$make)
             },
-            draw: |profile, source| {
+            |profile, source| {
                 let $profile = profile;
                 is_lawful(profile, $make.sample(profile, source))
             },
-        }
+        )
     };
 }
 

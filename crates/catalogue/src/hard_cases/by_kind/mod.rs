@@ -49,6 +49,17 @@ struct Subject {
 }
 
 impl Subject {
+    /// A subject that is tried on all profiles.
+    fn new(
+        (kind, name): (&'static str, &'static str),
+        (above, below): (bool, bool),
+        examine: fn(&Profile, Run) -> Found,
+        watch: fn(&Profile) -> Found,
+        draw: fn(&Profile, &mut End) -> bool,
+    ) -> Self {
+        Self { kind, name, above, below, is_tried: |_| true, examine, watch, draw }
+    }
+
     /// True if the only right answer is a refusal.
     fn refuses(&self, setting: &Setting) -> bool {
         match setting {

@@ -24,19 +24,16 @@ type Tinted = Scaled<Profile, N>;
 
 macro_rules! wavelengths {
     ($kind:literal, $name:literal, above: $above:literal, below: $below:literal, $weights:expr, |$profile:ident| $make:expr) => {
-        Subject {
-            kind: $kind,
-            name: $name,
-            above: $above,
-            below: $below,
-            is_tried: |_| true,
-            examine: |$profile, run| law($profile, &$make, $weights, run),
-            watch: |$profile| law($profile, &$make, Weights::Any, super::WATCHED),
-            draw: |$profile, source| {
+        Subject::new(
+            ($kind, $name),
+            ($above, $below),
+            |$profile, run| law($profile, &$make, $weights, run),
+            |$profile| law($profile, &$make, Weights::Any, super::WATCHED),
+            |$profile, source| {
                 let field = Scaled::new($profile.clone(), TINTS).expect(LAWFUL);
                 is_lawful($profile, $make.sample(&field, source))
             },
-        }
+        )
     };
 }
 

@@ -1,0 +1,23 @@
+//! What is run of an entry of the catalogue.
+
+use fairflight_laws::Run;
+use std::fmt::{Debug, Formatter, Result};
+
+/// A function of a run. To a reader of a debug print it is a function.
+pub(crate) struct Function<T>(Box<dyn Fn(Run) -> T + Send + Sync>);
+
+impl<T> Function<T> {
+    pub(crate) fn new(function: impl Fn(Run) -> T + Send + Sync + 'static) -> Self {
+        Self(Box::new(function))
+    }
+
+    pub(crate) fn run(&self, run: Run) -> T {
+        (self.0)(run)
+    }
+}
+
+impl<T> Debug for Function<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        f.write_str("Fn(Run)")
+    }
+}
