@@ -206,6 +206,7 @@ fn faces(min: f64, max: f64, d: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::random;
     use glam::dvec3;
 
     fn ball() -> Bounds {
@@ -320,11 +321,8 @@ mod tests {
 
     #[test]
     fn both_kinds_agree_with_the_points_of_random_rays() {
-        let mut state = 1u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * 2f64.powi(-52) - 1.0
-        };
+        let mut uniform = random(1);
+        let mut next = || 2.0 * uniform() - 1.0;
         for bounds in
             [Bounds::sphere(DVec3::ZERO, 1.0).unwrap(), Bounds::aligned_box(-DVec3::ONE, DVec3::ONE).unwrap()]
         {

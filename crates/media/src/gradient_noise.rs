@@ -152,17 +152,15 @@ fn mix(a: f64, b: f64, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_support::random;
     use glam::dvec3;
     use noise::permutationtable::{NoiseHasher, PermutationTable};
     use noise::{NoiseFn, Perlin};
 
     #[test]
     fn the_values_are_those_of_the_library() {
-        let mut state = 5u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * 2f64.powi(-53) - 0.5
-        };
+        let mut uniform = random(5);
+        let mut next = || uniform() - 0.5;
         for seed in [0, 1, 77, u32::MAX] {
             let (ours, theirs) = (GradientNoise::new(seed), Perlin::new(seed));
             for size in [1.0, 10.0, 1e3, 1e9] {
@@ -198,11 +196,8 @@ mod tests {
     #[test]
     fn slopes_and_curvatures_stay_below_their_bounds() {
         let noise = GradientNoise::new(3);
-        let mut state = 8u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * 2f64.powi(-53) - 0.5
-        };
+        let mut uniform = random(8);
+        let mut next = || uniform() - 0.5;
         let (mut steepest, mut most_curved) = (0.0_f64, 0.0_f64);
         for _ in 0..100_000 {
             let point = 100.0 * dvec3(next(), next(), next());

@@ -68,6 +68,8 @@ mod quadrature;
 mod ray;
 mod rounding;
 mod spectral;
+#[cfg(test)]
+mod test_support;
 mod voxels;
 mod watched;
 

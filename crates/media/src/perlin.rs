@@ -182,12 +182,10 @@ mod tests {
         Perlin::new(parameters).unwrap()
     }
 
+    /// Numbers in [−1/2, 1/2).
     fn random() -> impl FnMut() -> f64 {
-        let mut state = 3u64;
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * 2f64.powi(-53) - 0.5
-        }
+        let mut uniform = crate::test_support::random(3);
+        move || uniform() - 0.5
     }
 
     #[test]

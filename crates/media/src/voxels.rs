@@ -203,6 +203,7 @@ impl Sum {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::test_support::random;
     use glam::{DMat3, dvec3};
 
     pub(crate) const SIZE: [i64; 3] = [7, 5, 6];
@@ -210,17 +211,9 @@ pub(crate) mod tests {
     /// Random values in [0.5, 1.5] within a background of 0.25.
     pub(crate) struct Dense(Vec<f64>);
 
-    fn random() -> impl FnMut() -> f64 {
-        let mut state = 7u64;
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 * 2f64.powi(-53)
-        }
-    }
-
     impl Dense {
         pub(crate) fn new() -> Self {
-            let mut next = random();
+            let mut next = random(7);
             Self((0..SIZE.iter().product()).map(|_| 0.5 + next()).collect())
         }
         fn at(&self, p: [i64; 3]) -> f64 {
@@ -275,7 +268,7 @@ pub(crate) mod tests {
 
     #[test]
     fn random_lines() {
-        let mut next = random();
+        let mut next = random(7);
         let mut vector =
             |size: f64, middle: f64| DVec3::from_array([0, 1, 2].map(|_| size * (next() - 0.5) + middle));
         for _ in 0..2000 {

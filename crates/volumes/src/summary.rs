@@ -1,9 +1,7 @@
 //! What a tree holds in total, found in one walk over it, which also is where values that are not finite are refused.
 
 use crate::error::VdbError;
-use crate::tree::{
-    LEAF_BITS, LOWER_BITS, LOWER_WORDS, Level, Slot, Tree, UPPER_BITS, UPPER_WORDS, is_on, slot_origin,
-};
+use crate::tree::{LEAF_BITS, LOWER_BITS, Level, Slot, Tree, UPPER_BITS, is_on, slot_origin};
 
 /// Totals over a tree.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,22 +34,27 @@ impl Summary {
     }
 
     fn upper_node(&mut self, tree: &Tree, origin: [i32; 3], node: u32) -> Result<(), VdbError> {
-        for slot in 0..Level::<UPPER_WORDS>::SLOTS {
-            let origin = slot_origin::<LOWER_BITS, UPPER_BITS>(origin, slot);
-            match tree.upper.slot(node, slot) {
-                Slot::Tile { value, active } => self.tile(origin, LOWER_BITS, value, active)?,
-                Slot::Child(lower) => self.lower_node(tree, origin, lower)?,
-            }
-        }
-        Ok(())
+        let child = |summary: &mut Self, origin, lower| summary.lower_node(tree, origin, lower);
+        self.slots::<LOWER_BITS, UPPER_BITS, _>(&tree.upper, (origin, node), child)
     }
 
     fn lower_node(&mut self, tree: &Tree, origin: [i32; 3], node: u32) -> Result<(), VdbError> {
-        for slot in 0..Level::<LOWER_WORDS>::SLOTS {
-            let origin = slot_origin::<LEAF_BITS, LOWER_BITS>(origin, slot);
-            match tree.lower.slot(node, slot) {
-                Slot::Tile { value, active } => self.tile(origin, LEAF_BITS, value, active)?,
-                Slot::Child(leaf) => self.leaf(tree, origin, leaf)?,
+        let child = |summary: &mut Self, origin, leaf| summary.leaf(tree, origin, leaf);
+        self.slots::<LEAF_BITS, LOWER_BITS, _>(&tree.lower, (origin, node), child)
+    }
+
+    /// Takes in the tiles of a node of `2^BITS` voxels along each axis, whose slots have `2^SLOT_BITS`, and each `child`.
+    fn slots<const SLOT_BITS: u32, const BITS: u32, const WORDS: usize>(
+        &mut self,
+        level: &Level<WORDS>,
+        (origin, node): ([i32; 3], u32),
+        child: impl Fn(&mut Self, [i32; 3], u32) -> Result<(), VdbError>,
+    ) -> Result<(), VdbError> {
+        for slot in 0..Level::<WORDS>::SLOTS {
+            let origin = slot_origin::<SLOT_BITS, BITS>(origin, slot);
+            match level.slot(node, slot) {
+                Slot::Tile { value, active } => self.tile(origin, SLOT_BITS, value, active)?,
+                Slot::Child(index) => child(self, origin, index)?,
             }
         }
         Ok(())
