@@ -133,6 +133,17 @@ impl Default for ReportArguments {
     }
 }
 
+/// Limits of a run.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct Limits {
+    /// Refuse a run that is expected to make more look-ups
+    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
+    pub budget: f64,
+    /// Threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
 /// Arguments of `estimate`.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct EstimateArguments {
@@ -148,12 +159,8 @@ pub(crate) struct EstimateArguments {
     /// Instead of the spec's seed
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Refuse a run that is expected to make more look-ups
-    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
-    pub budget: f64,
-    /// Threads [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `advise`.
@@ -184,12 +191,8 @@ pub(crate) struct AdviseArguments {
     /// The seed of all variates
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Refuse a run that is expected to make more look-ups
-    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
-    pub budget: f64,
-    /// Threads [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `render`.
@@ -217,12 +220,8 @@ pub(crate) struct RenderArguments {
     /// Instead of the scene's seed
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Refuse a run that is expected to make more look-ups
-    #[arg(long, value_name = "NUMBER", value_parser = positive, default_value = "1e11")]
-    pub budget: f64,
-    /// Threads [default: all cores]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -20,15 +20,21 @@ fn prefix(name: &OsStr, what: &str) -> OsString {
     prefix
 }
 
+/// What makes files and folders with these rights, where a system has them.
+#[cfg_attr(not(unix), allow(unused_variables))]
+fn builder(prefix: &OsStr, mode: u32) -> Builder<'_, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(prefix).rand_bytes(RANDOM);
+    #[cfg(unix)]
+    builder.permissions(<fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(mode));
+    builder
+}
+
 /// A new file with the rights of an ordinary one, into which it will be renamed.
 pub(crate) fn file(parent: &Path, name: &OsStr) -> io::Result<NamedTempFile> {
     let prefix = prefix(name, "partial");
-    let mut builder = Builder::new();
-    builder.prefix(&prefix).rand_bytes(RANDOM);
-    #[cfg(unix)]
-    builder.permissions(<fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
     loop {
-        let file = builder.tempfile_in(parent)?;
+        let file = builder(&prefix, 0o666).tempfile_in(parent)?;
         let _ = file.as_file().lock();
         // Before it was locked another run may have taken it for abandoned.
         if file.path().exists() {
@@ -40,12 +46,8 @@ pub(crate) fn file(parent: &Path, name: &OsStr) -> io::Result<NamedTempFile> {
 /// A new folder with the rights of an ordinary one, and what keeps it locked: nothing where folders cannot be opened.
 pub(crate) fn folder(parent: &Path, name: &OsStr, what: &str) -> io::Result<(TempDir, Option<File>)> {
     let prefix = prefix(name, what);
-    let mut builder = Builder::new();
-    builder.prefix(&prefix).rand_bytes(RANDOM);
-    #[cfg(unix)]
-    builder.permissions(<fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o777));
     loop {
-        let folder = builder.tempdir_in(parent)?;
+        let folder = builder(&prefix, 0o777).tempdir_in(parent)?;
         let lock = File::open(folder.path()).ok();
         let _ = lock.as_ref().map(File::lock);
         if folder.path().exists() {

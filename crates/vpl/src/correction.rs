@@ -36,3 +36,16 @@ impl<W: Types> Correction<W> for Uncorrected {
         W::Spectrum::ZERO
     }
 }
+
+/// A correction or none: one branch per vertex, and half of the integrators to compile.
+impl<W: Types, C: Correction<W>> Correction<W> for Option<C> {
+    fn recover(
+        &mut self,
+        gather: &mut Gather<'_, W>,
+        y: &Vertex,
+        which: Connected,
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
+        self.as_mut().map_or(W::Spectrum::ZERO, |correction| correction.recover(gather, y, which, source))
+    }
+}

@@ -21,14 +21,16 @@ pub(crate) fn run(
     stderr: &mut dyn Write,
 ) -> Result<i32, Failure> {
     let question = question::Question::of(arguments, stdin)?;
-    let budget = Budget::of(arguments.budget);
-    let (rays, warning) = environment.on_threads(arguments.threads, || trial::rays(&question, budget))?;
+    let budget = Budget::of(arguments.limits.budget);
+    let (rays, warning) =
+        environment.on_threads(arguments.limits.threads, || trial::rays(&question, budget))?;
     // A person who does not see this has the JSON all the same.
     if let Some(warning) = warning {
         let _ = writeln!(stderr, "warning: {warning}");
     }
-    let answer = environment
-        .on_threads(arguments.threads, || trial::answer(&question, &rays, arguments.seed, environment))?;
+    let answer = environment.on_threads(arguments.limits.threads, || {
+        trial::answer(&question, &rays, arguments.seed, environment)
+    })?;
     let notes = if environment.is_quiet() { String::new() } else { answer.notes() };
     if environment.shows_tables() && !arguments.json {
         print(stdout, &(answer.table() + &notes))?;

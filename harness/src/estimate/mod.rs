@@ -32,8 +32,8 @@ pub(crate) fn run(
     let overrides = Overrides { samples: arguments.samples, seed: arguments.seed };
     let request = Request::parse_in(input.text(), input.folder(), overrides);
     let request = request.map_err(|failure| input.within(failure))?;
-    let budget = Budget::of(arguments.budget);
-    let prepared = environment.on_threads(arguments.threads, || {
+    let budget = Budget::of(arguments.limits.budget);
+    let prepared = environment.on_threads(arguments.limits.threads, || {
         let prepared = prepare(&request, budget)?;
         let warnings = warnings(&prepared);
         Ok((prepared, warnings))
@@ -43,7 +43,8 @@ pub(crate) fn run(
         // Nobody is left to tell if standard error is closed.
         let _ = writeln!(stderr, "warning: {warning}");
     }
-    let outcomes = environment.on_threads(arguments.threads, || answer(&prepared, &input, environment));
+    let outcomes =
+        environment.on_threads(arguments.limits.threads, || answer(&prepared, &input, environment));
     let outcomes = outcomes.map_err(|failure| input.within(failure))?;
     let unsound = outcomes.iter().any(|outcome| outcome.unsound);
     let text = if environment.shows_tables() && !arguments.json {

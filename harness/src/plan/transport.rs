@@ -7,13 +7,10 @@ use crate::estimator::{InScene, Shadow, ShadowWorker, Unlawful};
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
 use fairflight_media::LineThickness;
-use fairflight_paths::transport::{MadeOf, Types, Vertex, World};
+use fairflight_paths::transport::{MadeOf, Types, World};
 use fairflight_paths::{Heuristic, PathTracer};
 use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
-use fairflight_sources::UniformSource;
-use fairflight_vpl::{
-    Component, Connected, Correction, Gather, Pairing, Term, Uncorrected, Vpl, VplIntegrator,
-};
+use fairflight_vpl::{Component, Gather, Pairing, Term, Vpl, VplIntegrator};
 use std::cell::Cell;
 
 /// What an integrator meets beside the medium.
@@ -219,50 +216,13 @@ impl VplPlan {
         };
         let (walk, shadow) = (walk.walk(), shadow.worker(unlawful));
         let gather = Gather { world, vpls: stage.vpls, term, heuristic: *heuristic, walk, shadow };
-        let (correction, pairing) = match self.compensation {
-            None => (AnyCorrection::None, Pairing::Every),
-            Some(options) => {
-                let compensation = Compensation::new(options, &self.mean);
-                let pairing = compensation.pairing();
-                (AnyCorrection::Compensation(compensation), pairing)
-            }
-        };
+        let correction = self.compensation.map(|options| Compensation::new(options, &self.mean));
+        let pairing = correction.as_ref().map_or(Pairing::Every, Compensation::pairing);
         let integrator = VplIntegrator::new(gather, (self.eye_samples, pairing), correction);
         counting(integrator.component(component), |integrator| {
-            let (compensation_tried, compensation_inside) = integrator.correction().vertices();
+            let (compensation_tried, compensation_inside) =
+                integrator.correction().as_ref().map_or((0, 0), Compensation::vertices);
             Counts { truncated: integrator.truncated(), compensation_tried, compensation_inside }
         })
-    }
-}
-
-/// A correction or none: one branch per point, and half of the integrators to compile.
-#[derive(Debug)]
-enum AnyCorrection<'m> {
-    None,
-    Compensation(Compensation<'m>),
-}
-
-impl<W: Types> Correction<W> for AnyCorrection<'_> {
-    fn recover(
-        &mut self,
-        gather: &mut Gather<'_, W>,
-        y: &Vertex,
-        which: Connected,
-        source: &mut impl UniformSource,
-    ) -> W::Spectrum {
-        match self {
-            Self::None => Uncorrected.recover(gather, y, which, source),
-            Self::Compensation(compensation) => compensation.recover(gather, y, which, source),
-        }
-    }
-}
-
-impl AnyCorrection<'_> {
-    /// Compensation vertices that were tried, and those that counted.
-    fn vertices(&self) -> (u64, u64) {
-        match self {
-            Self::None => (0, 0),
-            Self::Compensation(compensation) => compensation.vertices(),
-        }
     }
 }

@@ -56,7 +56,7 @@ pub(crate) fn run(
     let media = MediumLibrary::default();
     let points = points(&request, arguments, &media, &input)?;
     let warning = environment
-        .on_threads(arguments.threads, || within_budget(&points, arguments, &media))
+        .on_threads(arguments.limits.threads, || within_budget(&points, arguments, &media))
         .map_err(|failure| input.within(failure))?;
     // Nobody is left to tell if standard error is closed.
     if let Some(warning) = warning {
@@ -86,8 +86,8 @@ pub(crate) fn run(
             environment,
         };
         outputs.prepare()?;
-        let (end, image, statistics) =
-            environment.on_threads(arguments.threads, || rendering.finished(early.as_ref(), &mut outputs))?;
+        let (end, image, statistics) = environment
+            .on_threads(arguments.limits.threads, || rendering.finished(early.as_ref(), &mut outputs))?;
         let place = point.value.map(|value| format!("sweep value {value}: ")).unwrap_or_default();
         for warning in &statistics.warnings {
             let _ = writeln!(stderr, "warning: {place}{warning}");

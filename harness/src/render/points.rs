@@ -46,7 +46,7 @@ pub(super) fn within_budget(
 ) -> Result<Option<String>, Failure> {
     let is_whole = arguments.time_limit.is_none();
     let length = if is_whole { work::Length::Whole } else { work::Length::Limited };
-    let budget = Budget::of(arguments.budget);
+    let budget = Budget::of(arguments.limits.budget);
     let (mut lookups, mut seconds) = (0.0, 0.0_f64);
     for Point { value, spec, plan } in points {
         let work = work::check(spec, plan, media, (budget, length)).map_err(|failure| failure.at(*value))?;

@@ -40,3 +40,16 @@ pub(crate) fn estimate(spec: &str) -> Value {
 pub(crate) fn fixture(name: &str) -> String {
     format!("{}/../tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
 }
+
+/// The same without what the clock and the command line say.
+pub(crate) fn timeless(mut statistics: Value) -> Value {
+    for (part, key) in [
+        ("cost", "seconds"),
+        ("cost", "cpu_seconds"),
+        ("efficiency", "per_second"),
+        ("provenance", "command"),
+    ] {
+        statistics[part][key] = Value::Null;
+    }
+    statistics
+}

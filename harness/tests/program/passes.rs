@@ -1,6 +1,6 @@
 //! `harness render --time-limit`: images that are drawn pass by pass, and may end early.
 
-use crate::common::{Outcome, harness};
+use crate::common::{Outcome, harness, timeless};
 use crate::render::{scene, with};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -14,15 +14,7 @@ fn render(scene: &Value, folder: &Path, more: &[&str]) -> (Outcome, Vec<u8>, Val
     let outcome = harness(&arguments, &scene.to_string());
     assert_eq!((outcome.code, outcome.stdout.as_str()), (0, ""), "{}", outcome.stderr);
     let read = |path| std::fs::read(path).expect("a file");
-    let mut statistics: Value = serde_json::from_slice(&read(&statistics)).expect("JSON");
-    for (part, key) in [
-        ("cost", "seconds"),
-        ("cost", "cpu_seconds"),
-        ("efficiency", "per_second"),
-        ("provenance", "command"),
-    ] {
-        statistics[part][key] = Value::Null;
-    }
+    let mut statistics = timeless(serde_json::from_slice(&read(&statistics)).expect("JSON"));
     // Of virtual point lights only.
     if let Some(seconds) = statistics.pointer_mut("/virtual_point_lights/light_path_seconds") {
         *seconds = Value::Null;
