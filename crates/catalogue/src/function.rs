@@ -21,3 +21,13 @@ impl<T> Debug for Function<T> {
         f.write_str("Fn(Run)")
     }
 }
+
+/// The lists that functions of one name give in each of some modules, joined in this order.
+macro_rules! joined {
+    ($function:ident of $($module:ident),+) => {{
+        let mut all = Vec::new();
+        $(all.extend($module::$function());)+
+        all
+    }};
+}
+pub(crate) use joined;

@@ -5,7 +5,7 @@ use crate::{CompensationOptions, LocalMean, Strategy};
 use fairflight_paths::transport::{Types, Vertex};
 use fairflight_scene::Spectrum;
 use fairflight_sources::UniformSource;
-use fairflight_vpl::{Connected, Correction, Gather, Pairing, Term};
+use fairflight_vpl::{Connected, Connections, Correction, Gather, Pairing, Term};
 
 /// Makes up for what bounded connections lose.
 ///
@@ -129,13 +129,8 @@ impl Strategy {
 }
 
 impl<W: Types> Correction<W> for Compensation<'_> {
-    fn recover(
-        &mut self,
-        gather: &mut Gather<'_, W>,
-        y: &Vertex,
-        which: Connected,
-        source: &mut impl UniformSource,
-    ) -> W::Spectrum {
+    fn recover(&mut self, at: Connections<'_, '_, W>, source: &mut impl UniformSource) -> W::Spectrum {
+        let Connections { gather, y, which } = at;
         let Term::Bounded(bound) = gather.term else { return W::Spectrum::ZERO };
         if bound == f64::INFINITY || self.options.steps == Some(0) {
             return W::Spectrum::ZERO;
@@ -194,6 +189,10 @@ mod tests {
         lit().gather(&lights(), bound).connected(y, which, &mut Scripted::new([]))
     }
 
+    fn all_of<'a, 's, W: Types>(gather: &'a mut Gather<'s, W>, y: &'a Vertex) -> Connections<'a, 's, W> {
+        Connections { gather, y, which: Connected::All }
+    }
+
     fn recovered(
         options: CompensationOptions,
         bound: f64,
@@ -203,7 +202,10 @@ mod tests {
         let (scene, vpls, mean) = (lit(), lights(), mean(0.5));
         let mut compensation = Compensation::new(options, &mean);
         let mut source = Scripted::new(script.iter().copied());
-        let found = compensation.recover(&mut scene.gather(&vpls, bound), &on_floor(), which, &mut source);
+        let found = compensation.recover(
+            Connections { gather: &mut scene.gather(&vpls, bound), y: &on_floor(), which },
+            &mut source,
+        );
         assert_eq!(source.remaining(), 0);
         (found, compensation.vertices())
     }
@@ -300,8 +302,7 @@ mod tests {
         let mut gather = scene.gather(&vpls, 1.0);
         gather.term = Term::Excess(1.0);
         let mut source = Scripted::new([]);
-        let found =
-            Compensation::new(EXACT, &mean).recover(&mut gather, &on_floor(), Connected::All, &mut source);
+        let found = Compensation::new(EXACT, &mean).recover(all_of(&mut gather, &on_floor()), &mut source);
         assert_eq!(found, 0.0);
     }
 
@@ -312,12 +313,8 @@ mod tests {
             let options = CompensationOptions { strategy, ..one_step() };
             let mut gather = scene.gather(&[], 1.0);
             let mut source = Scripted::new(ACROSS);
-            let found = Compensation::new(options, &mean).recover(
-                &mut gather,
-                &on_floor(),
-                Connected::All,
-                &mut source,
-            );
+            let found =
+                Compensation::new(options, &mean).recover(all_of(&mut gather, &on_floor()), &mut source);
             assert!((found - REFLECTANCE * 0.75 * DIRECT).abs() < 1e-14);
         }
     }
@@ -340,8 +337,7 @@ mod tests {
             assert!(lost > 0.0 && x.vertex.surface().is_none());
             let above = gather.connected(&x.vertex, Connected::All, &mut Scripted::new([]));
             let mut source = Scripted::new(script.concat());
-            let found =
-                Compensation::new(options, &mean).recover(&mut gather, &y, Connected::All, &mut source);
+            let found = Compensation::new(options, &mean).recover(all_of(&mut gather, &y), &mut source);
             assert!((found - x.factor * lost * above).abs() < 1e-14 * above.abs(), "{placement:?}");
         }
     }

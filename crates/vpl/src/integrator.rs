@@ -1,6 +1,6 @@
 //! Radiance from virtual point lights (instant radiosity, raab-2008 section 4.2, engelhardt-2013 section 3.3).
 
-use crate::{Connected, Correction, Gather};
+use crate::{Connected, Connections, Correction, Gather};
 use fairflight_media::Line;
 use fairflight_paths::Integrator;
 use fairflight_paths::transport::{Event, Types, Vertex};
@@ -106,7 +106,7 @@ impl<W: Types, K: Correction<W>> VplIntegrator<'_, W, K> {
             radiance += gather.connected(y, which, source) * scale;
         }
         if *component != Component::Connections {
-            radiance += correction.recover(gather, y, which, source) * scale;
+            radiance += correction.recover(Connections { gather, y, which }, source) * scale;
         }
         if *component == Component::All {
             radiance += gather.emitters(y, source);
@@ -206,14 +206,8 @@ mod tests {
     }
 
     impl<W: Types> Correction<W> for Spy {
-        fn recover(
-            &mut self,
-            _gather: &mut Gather<'_, W>,
-            _y: &Vertex,
-            which: Connected,
-            _source: &mut impl UniformSource,
-        ) -> W::Spectrum {
-            self.asked.push(which);
+        fn recover(&mut self, at: Connections<'_, '_, W>, _source: &mut impl UniformSource) -> W::Spectrum {
+            self.asked.push(at.which);
             W::Spectrum::splat(self.adds)
         }
     }

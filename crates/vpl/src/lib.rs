@@ -53,7 +53,7 @@ mod ledger;
 mod light_paths;
 mod vpl;
 
-pub use correction::{Correction, Uncorrected};
+pub use correction::{Connections, Correction, Uncorrected};
 pub use emission::{Emitters, Start};
 pub use gather::{Connected, Gather, Term};
 pub use integrator::{Component, Pairing, VplIntegrator};

@@ -18,7 +18,7 @@ use std::sync::Arc;
 const SAMPLES: u64 = 50_000;
 
 /// All checks between bounds in cells.
-pub(super) fn in_cells() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let bump =
         PiecewiseLinear::new(vec![0.0, 1.0, 1.5, 2.5, 4.0], vec![0.1, 0.1, 1.8, 0.3, 0.0]).expect(LAWFUL);
     let cells = bump.equal_cells(6);

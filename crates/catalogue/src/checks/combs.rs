@@ -27,7 +27,7 @@ const LEVELS: u64 = 250_000;
 const RESOLVED: u64 = 60_000;
 
 /// Checks of combs, for the catalogue.
-pub(super) fn combs() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
 
     let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
@@ -159,7 +159,9 @@ fn telescoping<F: SpecimenField>(
 fn jackknife<F: SpecimenField>(specimen: &Arc<Specimen<F>>, teeth: u32) -> Check {
     let comb = Comb::new(teeth, CombShape::Uniform).expect(LAWFUL);
     add(specimen, "jackknife", Law::OwnExpectation, LEVELS, move |specimen, run| {
-        specimen.baseline(&Jackknife::new(comb), |_| Scores::Unbounded, LookupLaw::Fixed, run)
+        let jackknife = Jackknife::new(comb);
+        let result = specimen.examine(&jackknife, &[], |_| Scores::Unbounded, LookupLaw::Fixed, run);
+        specimen.baseline(&jackknife, result)
     })
     .about(["jackknife"])
 }

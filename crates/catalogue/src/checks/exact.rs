@@ -12,7 +12,7 @@ use std::sync::Arc;
 const ALBEDOS: [f64; 5] = [0.0, 0.3, 0.5, 0.9, 1.0];
 
 /// The law of every collision model at every albedo.
-pub(super) fn collision_models() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let single = |version| move |albedo| SingleParticle { version, albedo };
     vec![
         model("woodcock", |albedo| Woodcock { albedo }),

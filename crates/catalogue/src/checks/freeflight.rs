@@ -29,7 +29,7 @@ struct Medium<F> {
 }
 
 /// All checks of free flights.
-pub(super) fn free_flights() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let constant = Constant::new(0.7, 3.0).expect(LAWFUL);
     let constant = Medium::new("constant", constant, 0.7, (1.0, [1.4, 0.7]));
     let mut checks = constant.by_lookups();

@@ -18,7 +18,7 @@ const SAMPLES: u64 = 80_000;
 /// Pilots that teach.
 const PILOTS: u64 = 12;
 
-pub(super) fn hybrids() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 0.9, 0.2]).expect(LAWFUL);
     let smooth = Arc::new(Specimen::closed("hybrid/tent", tent));
     let edges = (0..=60).map(|i| f64::from(i) / 20.0).collect();

@@ -19,7 +19,7 @@ pub(super) const LAWFUL: &str = "the catalogue's media are lawful";
 const SPLITS: [u32; 3] = [1, 4, 16];
 
 /// Every estimator on every medium that admits it.
-pub(super) fn on_every_medium() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
 
     let constant = Constant::new(0.7, 3.0).expect(LAWFUL);

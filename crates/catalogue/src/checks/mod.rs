@@ -20,7 +20,7 @@ mod vpl;
 
 pub(crate) use regular::FirstEstimate;
 
-use crate::function::Function;
+use crate::function::{Function, joined};
 use crate::{hard_cases, twins};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_sources::named_seed;
@@ -188,20 +188,10 @@ impl Check {
 /// All checks, in the order of a report.
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
-    let mut checks = exact::collision_models();
-    checks.extend(phase::phase_functions());
-    checks.extend(media::on_every_medium());
-    checks.extend(regular::checks());
-    checks.extend(series::series());
-    checks.extend(combs::combs());
-    checks.extend(cells::in_cells());
-    checks.extend(hybrid::hybrids());
-    checks.extend(freeflight::free_flights());
-    checks.extend(spectral::spectral_flights());
-    checks.extend(points::point_sets());
-    checks.extend(paths::walks_in_space());
-    checks.extend(vpl::virtual_point_lights());
-    checks.extend(exactly::without_chance());
+    let mut checks = joined!(
+        checks of exact, phase, media, regular, series, combs, cells, hybrid, freeflight, spectral,
+        points, paths, vpl, exactly
+    );
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());
         Check::new(id, Law::WrongTwin, twin.of, twin.profile, samples, move |run| {

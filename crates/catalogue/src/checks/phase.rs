@@ -11,7 +11,7 @@ const SAMPLES: u64 = 400_000;
 const LAWFUL: &str = "the catalogue's phase functions are lawful";
 
 /// The law of every phase function.
-pub(super) fn phase_functions() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let mut checks = vec![of("isotropic", Isotropic), of("rayleigh", Rayleigh)];
     for g in [0.0, 1e-7, 1e-4, 0.5, 0.95, -0.95] {
         checks.push(of(format!("henyey_greenstein {g}"), HenyeyGreenstein::new(g).expect(LAWFUL)));

@@ -21,7 +21,7 @@ const DIMENSIONS: usize = 6;
 const REPLICAS: u64 = 20_000;
 
 /// All checks of point sets.
-pub(super) fn point_sets() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     vec![
         check("sobol", |seed| Sobol::new(DIMENSIONS, seed)),
         check("halton", |seed| Halton::new(DIMENSIONS, seed)),

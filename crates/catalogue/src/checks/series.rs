@@ -17,7 +17,7 @@ use glam::{DVec3, dvec3};
 use std::sync::Arc;
 
 /// Lists the checks.
-pub(super) fn series() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let bump = PiecewiseLinear::new(vec![0.0, 0.5, 1.5], vec![0.1, 1.0, 0.2]).expect(LAWFUL);
     let signed = PiecewiseConstant::new(vec![0.0, 0.4, 0.8, 1.2], vec![1.0, -0.2, 0.4]).expect(LAWFUL);
     // 3.9 units of szirmay-kalos-2017 eq. 21, near the surface of its sphere.

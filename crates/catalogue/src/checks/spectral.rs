@@ -27,7 +27,7 @@ const SAMPLES: u64 = 100_000;
 const N: usize = 3;
 
 /// All checks of spectral flights.
-pub(super) fn spectral_flights() -> Vec<Check> {
+pub(super) fn checks() -> Vec<Check> {
     let mut checks = decomposition();
 
     // Weights that nothing bounds want wavelengths that differ little.

@@ -21,7 +21,7 @@ mod voxel_faces;
 
 pub use by_kind::{ROWS, SAMPLERS, spared};
 
-use crate::function::Function;
+use crate::function::{Function, joined};
 use fairflight_laws::{CheckResult, Run};
 
 /// What came of a case.
@@ -162,18 +162,10 @@ impl HardCase {
 /// The hard cases, by number.
 #[must_use]
 pub fn hard_cases() -> Vec<HardCase> {
-    let mut cases = vacuum::cases();
-    cases.extend(signed::cases());
-    cases.extend(collisions::cases());
-    cases.extend(thickness::cases());
-    cases.extend(voxel_faces::cases());
-    cases.extend(far::cases());
-    cases.extend(variates::cases());
-    cases.extend(refusals::cases());
-    cases.extend(heavy_tails::cases());
-    cases.extend(spectral::cases());
-    cases.extend(anisotropy::cases());
-    cases.extend(connections::cases());
+    let mut cases = joined!(
+        cases of vacuum, signed, collisions, thickness, voxel_faces, far, variates, refusals,
+        heavy_tails, spectral, anisotropy, connections
+    );
     let table = by_kind::cases(&cases).into_iter().map(|case| HardCase { of_table: true, ..case });
     cases.extend(table);
     cases.sort_by_key(|case| case.number);

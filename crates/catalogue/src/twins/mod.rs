@@ -22,7 +22,7 @@ mod trial;
 mod variance;
 mod vpl;
 
-use crate::function::Function;
+use crate::function::{Function, joined};
 use fairflight_laws::Run;
 use fairflight_laws::freeflight::{FlightEvidence, FlightRefusal};
 use fairflight_stats::Verdict;
@@ -143,22 +143,8 @@ impl Twin {
 /// All wrong twins.
 #[must_use]
 pub fn twins() -> Vec<Twin> {
-    let mut all = collision_weights::twins();
-    all.extend(cells::twins());
-    all.extend(control::twins());
-    all.extend(exactly::twins());
-    all.extend(freeflight::twins());
-    all.extend(spectral::twins());
-    all.extend(points::twins());
-    all.extend(majorant::twins());
-    all.extend(sampling::twins());
-    all.extend(line_integral::twins());
-    all.extend(series::twins());
-    all.extend(combs::twins());
-    all.extend(logarithm::twins());
-    all.extend(variance::twins());
-    all.extend(phase::twins());
-    all.extend(paths::twins());
-    all.extend(vpl::twins());
-    all
+    joined!(
+        twins of collision_weights, cells, control, exactly, freeflight, spectral, points, majorant,
+        sampling, line_integral, series, combs, logarithm, variance, phase, paths, vpl
+    )
 }

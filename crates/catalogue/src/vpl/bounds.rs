@@ -8,7 +8,7 @@ use fairflight_paths::transport::{Types, Vertex, World};
 use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
 use fairflight_scene::Geometry;
 use fairflight_sources::Seeded;
-use fairflight_vpl::{Connected, Correction, Gather, Term};
+use fairflight_vpl::{Connected, Connections, Correction, Gather, Term};
 
 /// Relative rounding of a product of a path's weights.
 const ROUNDING: f64 = 1e-12;
@@ -35,7 +35,8 @@ pub fn compensation_at_most<W: Types<Spectrum = f64>>(
     let (mut greatest, mut near) = (0.0_f64, 0_u64);
     for draw in 0..run.samples {
         let before = correction.vertices().1;
-        let value: f64 = correction.recover(&mut gather, y, Connected::All, &mut source);
+        let value: f64 =
+            correction.recover(Connections { gather: &mut gather, y, which: Connected::All }, &mut source);
         let vertices = (correction.vertices().1 - before) as f64;
         if !(value >= 0.0 && value <= most * vertices * (1.0 + ROUNDING)) {
             return CheckResult::exact(false, format!("draw {draw}: {value} at {vertices} vertices"));

@@ -9,7 +9,7 @@ use fairflight_paths::{Heuristic, RayTransmittance, SamplingExtinction, Walk};
 use fairflight_scene::{Geometry, Lights, Material, Segment, Source, Surfaces, Volume};
 use fairflight_sources::UniformSource;
 use fairflight_stats::{Reference, Verdict, judge};
-use fairflight_vpl::{Connected, Correction, Gather, Pairing, Term, Vpl};
+use fairflight_vpl::{Connected, Connections, Correction, Gather, Pairing, Term, Vpl};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
@@ -246,5 +246,6 @@ pub fn estimate<W: Types>(
             (Connected::One(index), count as f64)
         }
     };
-    (gather.connected(y, which, source) + correction.recover(gather, y, which, source)) * scale
+    let connected = gather.connected(y, which, source);
+    (connected + correction.recover(Connections { gather, y, which }, source)) * scale
 }

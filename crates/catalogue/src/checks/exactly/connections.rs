@@ -16,7 +16,7 @@ use fairflight_paths::{Heuristic, Uniform, Walk};
 use fairflight_scene::{Geometry, Lights, Material, Segment, Surfaces, Volume};
 use fairflight_sources::{LARGEST_VARIATE, Scripted};
 use fairflight_transmittance::Regular;
-use fairflight_vpl::{Connected, Correction, Emitters, Gather, Term, Vpl};
+use fairflight_vpl::{Connected, Connections, Correction, Emitters, Gather, Term, Vpl};
 use glam::{DVec3, dvec3};
 
 /// Rounding of a few products.
@@ -107,12 +107,9 @@ impl Plates {
             shadow: Regular,
         };
         let mut source = Scripted::new(variates.iter().copied());
-        Compensation::new(options, &mean).recover(
-            &mut gather,
-            &Self::plate(surface),
-            Connected::All,
-            &mut source,
-        )
+        let connections =
+            Connections { gather: &mut gather, y: &Self::plate(surface), which: Connected::All };
+        Compensation::new(options, &mean).recover(connections, &mut source)
     }
 }
 

@@ -7,19 +7,15 @@ mod densities;
 mod variances;
 
 use super::{Check, Law};
+use crate::function::joined;
 use fairflight_laws::CheckResult;
 
 /// The inputs of these checks are lawful: a constructor that refuses one is a bug here.
 const LAWFUL: &str = "the catalogue's exact inputs are lawful";
 
 /// Checks without chance, for the catalogue.
-pub(super) fn without_chance() -> Vec<Check> {
-    let mut checks = decisions::checks();
-    checks.extend(densities::checks());
-    checks.extend(closed_forms::checks());
-    checks.extend(variances::checks());
-    checks.extend(connections::checks());
-    checks
+pub(super) fn checks() -> Vec<Check> {
+    joined!(checks of decisions, densities, closed_forms, variances, connections)
 }
 
 /// A check of this file that draws nothing.
@@ -34,13 +30,13 @@ fn check(
 
 #[cfg(test)]
 mod tests {
-    use super::without_chance;
+    use super::checks;
     use crate::Effort;
 
     #[test]
     fn all_hold_whatever_the_seed_and_each_sees_more_than_rounding() {
         let mut broken = Vec::new();
-        for check in without_chance() {
+        for check in checks() {
             let result = check.run(Effort::Quick, 1, 1e-9);
             assert_eq!((result.samples, check.samples(Effort::Full)), (0, 0), "{}", check.id);
             if result.holds != Some(true) {

@@ -12,6 +12,7 @@ mod slab;
 mod walks;
 
 use super::{Check, Law};
+use crate::function::joined;
 use fairflight_laws::{CheckResult, NotFinite, Run};
 use fairflight_stats::Verdict;
 
@@ -19,13 +20,8 @@ use fairflight_stats::Verdict;
 pub(crate) const LAWFUL: &str = "the catalogue's scenes are lawful";
 
 /// All checks of walks in space.
-pub(super) fn walks_in_space() -> Vec<Check> {
-    let mut checks = furnace::checks();
-    checks.extend(slab::checks());
-    checks.extend(single::checks());
-    checks.extend(adjoint::checks());
-    checks.extend(walks::checks());
-    checks
+pub(super) fn checks() -> Vec<Check> {
+    joined!(checks of furnace, slab, single, adjoint, walks)
 }
 
 /// A check of radiance that a verdict decides.
