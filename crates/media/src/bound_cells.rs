@@ -8,23 +8,23 @@ use crate::{
 /// The end of a cell, and what σ_t keeps to inside it. The cell begins where the one before it ends, the first at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundCell {
-    /// Where the cell ends \[length\].
+    /// End of the cell \[length\].
     pub to: f64,
-    /// What σ_t falls below nowhere in the cell \[1/length\].
+    /// Lower bound of σ_t in the cell \[1/length\].
     pub minorant: f64,
-    /// What σ_t exceeds nowhere in the cell \[1/length\].
+    /// Upper bound of σ_t in the cell \[1/length\].
     pub majorant: f64,
 }
 
 impl BoundCell {
-    /// What σ_t can vary by inside the cell, majorant − minorant \[1/length\].
+    /// Width of the range of σ_t inside the cell, majorant − minorant \[1/length\].
     #[inline]
     #[must_use]
     pub fn range(&self) -> f64 {
         self.majorant - self.minorant
     }
 
-    /// Whether σ_t may have this value inside the cell.
+    /// True if σ_t may have this value inside the cell.
     #[inline]
     #[must_use]
     pub fn admits(&self, sigma_t: f64) -> bool {
@@ -41,7 +41,7 @@ pub trait BoundedInCells: Extinction {
     /// The cells, in order.
     fn bound_cells(&self) -> &[BoundCell];
 
-    /// Whether σ_t may have this value at `s`: what an estimator that relies on the cells admits.
+    /// True if σ_t may have this value at `s`: the domain of an estimator that relies on the cells.
     fn cells_admit(&self, s: f64, sigma_t: f64) -> bool {
         let cells = self.bound_cells();
         let first = cells.partition_point(|cell| cell.to < s).min(cells.len().saturating_sub(1));

@@ -66,7 +66,7 @@ impl BoundGrid {
         Self { outside: (minorant, majorant), ..self }
     }
 
-    /// How many boxes there are along each axis.
+    /// Number of boxes along each axis.
     #[must_use]
     pub fn resolution(&self) -> [usize; 3] {
         self.boxes.resolution()
@@ -98,7 +98,8 @@ impl BoundGrid {
     /// a line that starts in or near the box (a clipped ray) is within its cell's bounds, also on a line that runs in a plane
     /// between boxes, along an edge, or through corners: the bounds of a box hold on its surface, and a little beyond.
     ///
-    /// Where the line leaves each box is computed from the plane itself: nothing is added up, and nothing divided by a direction of 0.
+    /// The distance at which the line leaves each box is computed from the plane itself: nothing is added up, and nothing divided by a
+    /// direction of 0.
     pub fn cells_along(&self, local: &Line, length: f64, cells: &mut Vec<BoundCell>) {
         cells.clear();
         if length <= 0.0 {
@@ -130,8 +131,8 @@ impl BoundGrid {
         }
     }
 
-    /// Where the line enters the box and where it leaves it, both on the stretch; `None` where it meets none of the inside. A line beside
-    /// a face by rounding counts as inside.
+    /// Distances at which the line enters and leaves the box, both on the stretch \[length\]; `None` where it meets none of the inside.
+    /// A line beside a face by rounding counts as inside.
     fn inside(&self, local: &Line, length: f64) -> Option<(f64, f64)> {
         let slack = self.boxes.slack();
         let (mut enters, mut leaves) = (0.0_f64, length);
@@ -165,7 +166,7 @@ fn push(cells: &mut Vec<BoundCell>, to: f64, (minorant, majorant): (f64, f64)) {
     }
 }
 
-/// Where a line is along one axis of the grid.
+/// Place of a line along one axis of the grid.
 struct Axis<'a> {
     boxes: &'a Boxes,
     axis: usize,
@@ -173,7 +174,7 @@ struct Axis<'a> {
     direction: f64,
     /// The box that the line is in.
     index: usize,
-    /// Where it leaves that box through a plane between two; infinite where there is none ahead.
+    /// Distance at which it leaves that box through a plane between two \[length\]; infinite where there is none ahead.
     crossing: f64,
 }
 
@@ -192,7 +193,7 @@ impl<'a> Axis<'a> {
         at
     }
 
-    /// Where the line meets the `i`-th plane.
+    /// Distance at which the line meets the `i`-th plane \[length\].
     #[inline]
     fn at(&self, i: usize) -> f64 {
         (self.boxes.plane(self.axis, i) - self.origin) / self.direction

@@ -1,4 +1,4 @@
-//! What a constructor of a field refuses.
+//! Errors of the constructors of fields.
 
 /// Why a field cannot be built. Each variant names the inequality that was violated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -68,7 +68,7 @@ pub enum FieldError {
         what: &'static str,
         /// The length of the profile.
         length: f64,
-        /// Where the last one ends.
+        /// The end of the last one.
         found: f64,
     },
     /// Two lists do not fit together.
@@ -76,7 +76,7 @@ pub enum FieldError {
     LengthMismatch {
         /// The parameter.
         what: &'static str,
-        /// How many entries the other list asks for.
+        /// The number of entries that the other list asks for.
         expected: usize,
         /// Their number.
         found: usize,

@@ -40,7 +40,7 @@ impl Bounds {
         Clip { line, entry_distance: 0.0, length: self.exit_distance(line.origin, line.direction) }
     }
 
-    /// Whether the line through `origin` along the unit vector `direction` certainly misses the bounds: a quick look before
+    /// True if the line through `origin` along the unit vector `direction` certainly misses the bounds: a quick look before
     /// [`clip`](Self::clip), which most rays of a camera need not go through. `false` says nothing.
     #[inline]
     #[must_use]
@@ -53,7 +53,7 @@ impl Bounds {
         far - along * along - radius * radius > 1e-12 * (far + radius * radius)
     }
 
-    /// Whether a point lies in the bounds, their surface included.
+    /// True if a point lies in the bounds, their surface included.
     #[inline]
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {

@@ -29,8 +29,8 @@ pub(crate) fn between(value: f64, a: f64, b: f64) -> f64 {
 /// Bounds of [`lerp`]\(t, a, b\) for t from `from` to `to`, at which it has the values `ends`.
 ///
 /// The exact interpolant is monotone in t, hence within its values at both ends; `lerp` is off by its own rounding there and in between.
-/// Of a and b of one sign that is relative to the value itself, (1 − t)|a| + t|b|: v ≥ v_end (1 − 3u)/(1 + 3u) > v_end (1 − 8u). Of both
-/// signs it is relative to the greater of |a| and |b|, however small the value. What `lerp` cannot leave bounds it as well.
+/// For a and b of one sign that is relative to the value itself, (1 − t)|a| + t|b|: v ≥ v_end (1 − 3u)/(1 + 3u) > v_end (1 − 8u). For both
+/// signs it is relative to the greater of |a| and |b|, however small the value. The range that `lerp` cannot leave bounds it as well.
 pub(crate) fn lerp_bounds(ends: [f64; 2], a: f64, b: f64) -> (f64, f64) {
     const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
     /// Two products below the normal numbers, at an end and in between, are off by one of these each.

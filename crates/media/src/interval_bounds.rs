@@ -7,7 +7,7 @@ use crate::{BoundCell, BoxBounds, Constant, Extinction, PiecewiseConstant, Piece
 /// **Law.** σ_t(s) lies within `bounds_between(from, to)` for `from ≤ s < to`, and at `to` as well where `to` is the length. Where the
 /// two bounds are equal σ_t has that value on the stretch, to rounding.
 pub trait IntervalBounds: Extinction {
-    /// What σ_t falls below nowhere, and what it exceeds nowhere, on a stretch within the profile, `from < to` \[1/length\].
+    /// Lower and upper bound of σ_t on a stretch within the profile, `from < to` \[1/length\].
     fn bounds_between(&self, from: f64, to: f64) -> (f64, f64);
 
     /// The profile in `count` cells of the same width (in one for a count of 0), each with its bounds; none for a profile of length 0.

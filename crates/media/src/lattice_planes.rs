@@ -1,4 +1,4 @@
-//! Where a line crosses the planes at integer coordinates of one axis.
+//! Crossings of a line with the planes at integer coordinates of one axis.
 
 /// 2⁵³, up to which every integer is a number of its own.
 const LARGEST_PLANE: f64 = 9_007_199_254_740_992.0;

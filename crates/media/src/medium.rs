@@ -26,7 +26,7 @@ impl Line {
 /// A medium may keep its data in coordinates of its own (the index space of voxels, the lattice of a noise). A line is
 /// mapped there once per ray by [`Medium::local`], and each look-up then costs no transformation.
 pub trait Medium {
-    /// Whether there is no extinction anywhere, known at compile time: code for a medium is then left out.
+    /// True if there is no extinction anywhere, known at compile time: code for a medium is then left out.
     const IS_EMPTY: bool = false;
 
     /// The line in the medium's own coordinates, still parametrised by world distance. The default is world space.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Formulas find them by interval arithmetic; where one has no bounds, or may have no value, they are infinite. Noise is none: the octaves beyond
 /// the first have all of their range in any box that is not far finer than their lattice, which is most of the range of the whole.
 pub trait BoxBounds: Medium {
-    /// What σ_t falls below nowhere, and what it exceeds nowhere, in the box between two corners in the medium's own coordinates
+    /// Lower and upper bound of σ_t in the box between two corners in the medium's own coordinates
     /// \[1/length\].
     fn bounds_in(&self, min: DVec3, max: DVec3) -> (f64, f64);
 
@@ -114,13 +114,13 @@ impl Boxes {
         Ok(Self::new(min, max, resolution))
     }
 
-    /// How many boxes there are along each axis.
+    /// Number of boxes along each axis.
     #[must_use]
     pub fn resolution(&self) -> [usize; 3] {
         self.resolution
     }
 
-    /// Where the `i`-th plane across an axis lies, `0 ≤ i ≤ resolution`. The first and the last are the faces of the whole, exactly.
+    /// Coordinate of the `i`-th plane across an axis, `0 ≤ i ≤ resolution`. The first and the last are the faces of the whole, exactly.
     #[inline]
     #[must_use]
     pub fn plane(&self, axis: usize, i: usize) -> f64 {

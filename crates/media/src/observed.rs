@@ -6,8 +6,8 @@ use std::cell::Cell;
 
 /// Counts the look-ups of a medium and keeps the range of the values found.
 ///
-/// What a walk is defined for (a majorant that is one, the domain of a version of the single particle model, finite numbers)
-/// depends on the greatest and the least σ_t that it met; one comparison each per look-up is what that costs.
+/// The conditions of a walk (a majorant that is one, the domain of a version of the single particle model, finite numbers)
+/// depend on the greatest and the least σ_t that it met; their price is one comparison each per look-up.
 #[derive(Debug)]
 pub struct Observed<M> {
     medium: M,
@@ -39,7 +39,7 @@ impl<M> Observed<M> {
         (self.lowest.get(), self.highest.get())
     }
 
-    /// Whether all values found so far were finite.
+    /// True if all values found so far were finite.
     pub fn is_finite(&self) -> bool {
         self.finite.get()
     }

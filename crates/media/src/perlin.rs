@@ -93,7 +93,7 @@ impl Perlin {
         })
     }
 
-    /// What the medium was made from.
+    /// The parameters that the medium was made from.
     #[must_use]
     pub fn parameters(&self) -> &PerlinParameters {
         &self.parameters

@@ -104,7 +104,7 @@ impl OpticalThickness for PiecewiseLinear {
     }
 }
 
-/// Where nodes are nowhere negative.
+/// Inverse of the optical thickness, for nodes that are nowhere negative.
 impl InvertOpticalThickness for PiecewiseLinear {
     #[inline]
     fn invert(&self, from: f64, depth: f64) -> Option<f64> {
@@ -128,8 +128,9 @@ impl InvertOpticalThickness for PiecewiseLinear {
 }
 
 impl PiecewiseLinear {
-    /// Where a stretch of one piece, with the extinctions `ends`, reaches this share of its optical thickness; `None` at the end of the
-    /// profile. Rounding may carry it to an end of the stretch: not where the extinction is 0 there, and no flight of positive depth ends.
+    /// Distance at which a stretch of one piece, with the extinctions `ends`, reaches this share of its optical thickness \[length\];
+    /// `None` at the end of the profile. Rounding may carry it to an end of the stretch: not where the extinction is 0 there, and no flight
+    /// of positive depth ends.
     #[inline]
     fn reach(&self, (start, end): (f64, f64), ends: (f64, f64), share: f64) -> Option<f64> {
         let s = (start + inverse_in_piece(ends, end - start, share)).min(end.next_down());
@@ -138,8 +139,8 @@ impl PiecewiseLinear {
     }
 }
 
-/// How far into a stretch of this width, with the extinctions `a` and `e` at its ends, its optical thickness reaches the
-/// `share` q of the whole, 0 ≤ q < 1.
+/// Distance into a stretch of this width, with the extinctions `a` and `e` at its ends, at which its optical thickness reaches
+/// the `share` q of the whole, 0 ≤ q < 1 \[length\].
 ///
 /// With the slope b = (e − a)/width the depth d is reached at t = 2 d/(a + √(a² + 2 b d)), the root that does not cancel
 /// for either sign of b. The whole is D = width (a + e)/2, so that 2 b d = (e² − a²) q: the radicand, the square of the

@@ -1,6 +1,6 @@
-//! How well the difference of two extinctions is known.
+//! Accuracy of the difference of two extinctions.
 
-/// What rounding may leave of σ_t − σ_main \[1/length\], four units of 2⁻⁵² of each: both are off by half a unit where they were read as
+/// Rounding error of σ_t − σ_main \[1/length\], four units of 2⁻⁵² of each: both are off by half a unit where they were read as
 /// decimals, by one and a half where they were interpolated, and their own difference by half a one. Where they nearly agree that
 /// is large beside the difference; a domain that ends at 0, or at a multiple of σ_samp, is to be judged with it.
 #[inline]

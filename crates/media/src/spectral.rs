@@ -173,7 +173,7 @@ impl<F: SpectralExtinction<N>, const N: usize> Wavelength<F, N> {
         &self.spectrum
     }
 
-    /// Which wavelength this is.
+    /// Index of this wavelength.
     #[inline]
     pub fn index(&self) -> usize {
         self.index

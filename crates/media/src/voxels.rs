@@ -66,7 +66,7 @@ impl<L: Lattice> Voxels<L> {
         &self.lattice
     }
 
-    /// How many cells a line in index coordinates crosses over `length`, at most. The thickness costs two look-ups for
+    /// Greatest number of cells that a line in index coordinates crosses over `length`. The thickness costs two look-ups for
     /// each; whoever takes lines from elsewhere refuses too many first.
     #[must_use]
     pub fn cells_crossed(&self, local: &Line, length: f64) -> u64 {

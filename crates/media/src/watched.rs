@@ -1,6 +1,6 @@
 //! Wrappers around a field for the one who measures: count the look-ups, and watch that each is lawful.
 //!
-//! They are separate from the fields, so that a run without them pays nothing.
+//! Wrappers are separate from the fields, so that a run without them pays nothing.
 
 use crate::of_field::of_field;
 use crate::{Extinction, InvertOpticalThickness, Majorant, OpticalThickness};
@@ -48,7 +48,7 @@ of_field!(InvertOpticalThickness, [F: InvertOpticalThickness] Counted<F>);
 
 /// The values of σ_t that an estimator is an estimator for.
 pub trait Domain {
-    /// Whether σ_t may have this value at this distance.
+    /// True if σ_t may have this value at this distance.
     fn admits(&self, s: f64, sigma_t: f64) -> bool;
 }
 

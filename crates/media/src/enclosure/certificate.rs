@@ -20,12 +20,12 @@ pub struct Certificate {
     pub thickness: f64,
     /// A bound of its error, rounding included; infinite where none is proved.
     pub error: f64,
-    /// What ∫ σ_t is not below, and not above; infinite where nothing is proved.
+    /// Lower and upper bound of ∫ σ_t \[1\]; infinite where nothing is proved.
     pub bounds: (f64, f64),
-    /// What σ_t falls below nowhere and exceeds nowhere \[1/length\]; infinite where nothing is proved.
+    /// Lower and upper bound of σ_t \[1/length\]; infinite where nothing is proved.
     pub range: (f64, f64),
-    /// Where the profile was cut, in increasing order: between two of these σ_t is smooth and resolved, or its part in the integral is
-    /// within the error. A cut of no more than some roundings on either side of a kink is given once.
+    /// Distances at which the profile was cut \[length\], in increasing order: between two of these σ_t is smooth and resolved, or its
+    /// part in the integral is within the error. A cut of no more than some roundings on either side of a kink is given once.
     pub borders: Vec<f64>,
     /// Arithmetic operations that it took.
     pub cost: u64,
@@ -82,7 +82,7 @@ impl Open {
         Self { from, to, stretch: field.enclose(from, to) }
     }
 
-    /// What cutting it can gain: everything where σ_t may have no value.
+    /// Greatest gain of cutting the stretch, its truncation \[1\]: infinite where σ_t may have no value.
     fn gain(&self) -> f64 {
         if self.stretch.may_be_undefined { f64::INFINITY } else { self.stretch.truncation }
     }
@@ -91,9 +91,9 @@ impl Open {
         !self.stretch.truncation.is_finite()
     }
 
-    /// Where to cut: on both sides of a kink, so near that the next cuts are within rounding of it, or in the middle.
+    /// Distances to cut at: on both sides of a kink, so near that the next cuts are within rounding of it, or in the middle.
     fn cuts(&self) -> Vec<f64> {
-        /// Of the width: kinks are found to the square of the error that the stretch allows, thus soon to rounding.
+        /// Share of the width: kinks are found to the square of the error that the stretch allows, thus soon to rounding.
         const BESIDE: f64 = 1e-5;
         let (from, to) = (self.from, self.to);
         let inside = |s: &f64| from < *s && *s < to;
@@ -284,7 +284,8 @@ fn borders(done: &[Open], length: f64) -> Vec<f64> {
     borders
 }
 
-/// Of a certificate that proves too little some of the borders, evenly: quadrature goes on by itself, and its budget is not the certificate's.
+/// Returns the borders; of a certificate that proves too little only some of them, evenly: quadrature goes on by itself, and its budget is
+/// not the certificate's.
 fn thinned(borders: Vec<f64>, is_doubtful: bool) -> Vec<f64> {
     const MOST: usize = 1 << 13;
     let step = if is_doubtful { borders.len().div_ceil(MOST).max(1) } else { 1 };
@@ -352,12 +353,12 @@ impl Sums {
         }
     }
 
-    /// Whether the bounds are good enough, or no better than rounding.
+    /// True if the bounds are good enough, or no better than rounding.
     fn are_within(&self, tolerance: Tolerance) -> bool {
         self.unknown == 0 && self.gain <= self.asked(tolerance).max(self.rounding)
     }
 
-    /// What the errors may add up to: half, the other being left to rounding.
+    /// Limit of the sum of errors \[1\]: half the tolerance, the other half being left to rounding.
     fn asked(&self, tolerance: Tolerance) -> f64 {
         0.5 * tolerance.absolute.max(tolerance.relative * self.integral.abs())
     }

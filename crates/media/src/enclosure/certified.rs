@@ -20,7 +20,7 @@ impl<F: Enclosed> Certified<F> {
         Self { field, certificate: OnceLock::new() }
     }
 
-    /// What is proved of its optical thickness, to [`Tolerance::TIGHT`].
+    /// The certificate of the field's optical thickness, to [`Tolerance::TIGHT`].
     pub fn certificate(&self) -> &Certificate {
         self.certificate.get_or_init(|| Arc::new(Certificate::of(&self.field, Tolerance::TIGHT)))
     }

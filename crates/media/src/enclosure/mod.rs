@@ -14,12 +14,12 @@ pub use certified::Certified;
 use crate::{Extinction, Line, Medium, Ray};
 use std::sync::Arc;
 
-/// What is proved of σ_t on a stretch of a profile.
+/// Proved facts about σ_t on a stretch of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// What σ_t falls below nowhere, as far as it has a value \[1/length\]; minus infinity where no bound is known.
+    /// Lower bound of σ_t, as far as it has a value \[1/length\]; minus infinity where no bound is known.
     pub low: f64,
-    /// What σ_t exceeds nowhere, as far as it has a value \[1/length\]; infinite where no bound is known.
+    /// Upper bound of σ_t, as far as it has a value \[1/length\]; infinite where no bound is known.
     pub high: f64,
     /// ∫ σ_t over the stretch, to the two errors below \[1\].
     pub integral: f64,
@@ -27,9 +27,9 @@ pub struct Stretch {
     pub truncation: f64,
     /// The part that is rounding: it adds up, however fine the partition.
     pub rounding: f64,
-    /// Whether σ_t may have no value somewhere on the stretch.
+    /// True if σ_t may have no value somewhere on the stretch.
     pub may_be_undefined: bool,
-    /// Where σ_t is probably not smooth, strictly inside: a better place to cut than the middle.
+    /// Distance at which σ_t is probably not smooth, strictly inside \[length\]: a better place to cut than the middle.
     pub kink: Option<f64>,
     /// Arithmetic operations that this took.
     pub cost: u64,
@@ -65,15 +65,15 @@ impl Stretch {
 /// **Law.** σ_t(s), for every s with `from ≤ s ≤ to` at which it has a value, lies within the range of `enclose(from, to)`, and ∫ σ_t over the
 /// stretch within its two errors of its integral. Where a field has no bounds the answer says so; it is never wrong.
 pub trait Enclosed: Extinction {
-    /// What is proved between two distances of the profile, `from < to`.
+    /// Encloses σ_t and its integral between two distances of the profile, `from < to`.
     fn enclose(&self, from: f64, to: f64) -> Stretch;
 
-    /// Where to cut before anything else, strictly inside the profile, in any order: borders of pieces that the field knows.
+    /// Distances to cut at before anything else, strictly inside the profile, in any order: borders of pieces that the field knows.
     fn known_borders(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// What σ_t falls below nowhere and what it exceeds nowhere between two distances: the hull over the stretch cut where its range is
+    /// Lower and upper bound of σ_t between two distances \[1/length\]: the hull over the stretch cut where its range is
     /// decided, until a cut changes little. Infinite where no bound is known.
     fn range_between(&self, from: f64, to: f64) -> (f64, f64) {
         range::between(self, from, to)
@@ -82,7 +82,7 @@ pub trait Enclosed: Extinction {
 
 /// A medium that is [`Enclosed`] along every straight line.
 pub trait LineEnclosed: Medium {
-    /// What is proved between two distances on a line in the medium's own coordinates.
+    /// Encloses σ_t and its integral between two distances on a line in the medium's own coordinates.
     fn enclose_line(&self, local: &Line, from: f64, to: f64) -> Stretch;
 
     /// See [`Enclosed::known_borders`].

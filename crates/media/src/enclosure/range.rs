@@ -22,7 +22,7 @@ pub(super) fn between(field: &(impl Enclosed + ?Sized), from: f64, to: f64) -> (
         }
         let (low, high) = hull(&pieces);
         let (below, above) = (attained.0 - low, high - attained.1);
-        /// Of the range that is attained: what an estimator in cells would hardly notice.
+        /// Share of the range that is attained: an estimator in cells would hardly notice as much.
         const CLOSE: f64 = 0.02;
         if below.max(above) <= CLOSE * (attained.1 - attained.0) || low >= high {
             break;

@@ -1,4 +1,4 @@
-//! What is proved of a formula: its range and its integral on a stretch of a line, its range in a box.
+//! Enclosures of a formula: its range and its integral on a stretch of a line, its range in a box.
 
 use super::program::{Algebra, Binary, Program, Unary};
 use crate::Stretch;
@@ -7,9 +7,9 @@ use crate::interval::{Interval, ORDER, Series};
 /// Evaluation over Taylor series: about the middle of a stretch, or for all of it at once.
 struct Smooth<'a> {
     variables: &'a [Series],
-    /// Whether an operation met an argument outside its domain, or may have.
+    /// True if an operation met an argument outside its domain, or may have.
     partial: bool,
-    /// Whether to look for places at which the function is not smooth; and the one found nearest to the middle.
+    /// True if places at which the function is not smooth are sought; `kink` is the one found nearest to the middle.
     seeks: bool,
     kink: Option<f64>,
     cost: u64,
@@ -144,7 +144,7 @@ impl Algebra for Smooth<'_> {
     }
 }
 
-/// What is proved of a formula between two distances on a line: each variable is `origin + s · direction`.
+/// Encloses a formula between two distances on a line: each variable is `origin + s · direction`.
 ///
 /// With c the middle, h half the width and t = (s − c)/h,
 ///

@@ -94,7 +94,7 @@ impl BoxBounds for ExpressionMedium {
     fn bounds_in(&self, min: DVec3, max: DVec3) -> (f64, f64) {
         /// Boxes that one range may take: 4 × 4 × 4.
         const MOST: usize = 64;
-        /// Of the range that is attained: what an estimator in cells would hardly notice.
+        /// Share of the range that is attained: an estimator in cells would hardly notice as much.
         const CLOSE: f64 = 0.02;
         let range = |min: DVec3, max: DVec3| {
             let sides = [0, 1, 2].map(|axis| Interval::new(min[axis], max[axis]));

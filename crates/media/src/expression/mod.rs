@@ -32,9 +32,9 @@ mod certainty_tests;
 pub struct ExpressionError {
     /// The formula as given.
     pub expression: String,
-    /// Where the first offence is, in characters from 1; one past the last where something is missing at the end.
+    /// Position of the first offence, in characters from 1; one past the last where something is missing at the end.
     pub column: usize,
-    /// What is wrong there.
+    /// Description of the offence.
     pub message: String,
 }
 

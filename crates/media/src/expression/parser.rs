@@ -23,7 +23,7 @@ pub(super) fn parse(expression: &str, variables: &[&str]) -> Result<Program, Exp
     }
 }
 
-/// How deep parentheses, signs and exponents may nest, so that no text exhausts the stack of the parser.
+/// Greatest depth to which parentheses, signs and exponents may nest, so that no text exhausts the stack of the parser.
 const DEEPEST: usize = 64;
 
 struct Parser<'a> {

@@ -89,7 +89,7 @@ enum Instruction {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Program {
     instructions: Vec<Instruction>,
-    /// How many intermediate results there are after the instructions so far.
+    /// Number of intermediate results after the instructions so far.
     height: usize,
 }
 
@@ -169,9 +169,9 @@ impl Program {
     }
 }
 
-/// What a formula can be evaluated over besides numbers: the operations on one kind of value.
+/// Operations on one kind of value, besides numbers, over which a formula can be evaluated.
 pub(super) trait Algebra {
-    /// What an operand and a result is.
+    /// Type of operands and results.
     type Value: Clone;
     fn number(&mut self, value: f64) -> Self::Value;
     fn variable(&mut self, index: usize) -> Self::Value;

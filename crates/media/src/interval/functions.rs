@@ -25,7 +25,7 @@ impl Interval {
         self.rising(f64::exp).meet(Self::new(0.0, f64::INFINITY))
     }
 
-    /// Of the numbers that are positive; undefined where none is.
+    /// Logarithm of the numbers that are positive; undefined where none is.
     pub(crate) fn ln(self) -> Self {
         if self.high < 0.0 || self.is_undefined() {
             return Self::UNDEFINED;
@@ -34,7 +34,7 @@ impl Interval {
         Self { low: self.low.max(0.0), high: self.high }.rising(f64::ln)
     }
 
-    /// Of the numbers that are not negative; undefined where all are.
+    /// Square root of the numbers that are not negative; undefined where all are.
     pub(crate) fn sqrt(self) -> Self {
         if self.high < 0.0 || self.is_undefined() {
             return Self::UNDEFINED;

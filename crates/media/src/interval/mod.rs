@@ -118,7 +118,7 @@ impl Interval {
         (0.5 * self.low + 0.5 * self.high).max(self.low).min(self.high)
     }
 
-    /// How far [`mid`](Self::mid) is from the farther end, rounded upwards.
+    /// Distance of [`mid`](Self::mid) from the farther end, rounded upwards.
     pub(crate) fn radius(self) -> f64 {
         let mid = self.mid();
         sum_up(mid, -self.low).max(sum_up(self.high, -mid))
@@ -129,7 +129,7 @@ impl Interval {
         self.low.abs().max(self.high.abs())
     }
 
-    /// What lies in both; undefined where nothing does.
+    /// Intersection of two intervals; undefined where it is empty.
     pub(crate) fn meet(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }

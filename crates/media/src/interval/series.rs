@@ -136,7 +136,7 @@ impl Series {
         self.value
     }
 
-    /// Whether the derivatives are known.
+    /// True if the derivatives are known.
     pub(crate) fn is_smooth(&self) -> bool {
         self.length > 0
     }

@@ -1,4 +1,4 @@
-//! What is proved of fractal noise along a line.
+//! Enclosures of fractal noise along a line.
 //!
 //! Between two lattice planes of an octave its noise is a polynomial of degree 16 in the distance, for which Lobatto's rule of ten nodes (exact to
 //! degree 17) has no truncation. Two things cut it: the noise of an octave is clamped to \[−1, 1\], the extinction at zero. On which side a

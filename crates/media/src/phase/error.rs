@@ -1,4 +1,4 @@
-//! What a constructor of a phase function refuses.
+//! Errors of the constructors of phase functions.
 
 use crate::FieldError;
 

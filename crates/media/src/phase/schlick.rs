@@ -24,7 +24,7 @@ impl Schlick {
     }
 }
 
-/// Where the mean cosine changes from its series to its closed form.
+/// Size of the parameter k from which on the mean cosine is computed by its closed form, and below by its series.
 const LARGE: f64 = 0.5;
 
 impl PhaseFunction for Schlick {

@@ -4,7 +4,7 @@
 
 use super::rule::{NODES, PanelIntegral, RULE};
 
-/// How exact an integral must be, and how much it may cost.
+/// Accuracy that an integral must have, and the cost that it may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Allowed absolute error.
@@ -34,7 +34,7 @@ pub struct Integral<const K: usize> {
     pub value: [f64; K],
     /// Estimates of their absolute errors, infinite where an integrand was not finite.
     pub error: [f64; K],
-    /// Whether all errors are within the tolerance.
+    /// True if all errors are within the tolerance.
     pub converged: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Where a function of the profile changes its sign: the kinks of integrands that take its size.
+//! Sign changes of a function of the profile: the kinks of integrands that take its size.
 
 use super::panels::Panels;
 use super::rule::{Expansion, RULE, value_of};
@@ -72,7 +72,7 @@ fn zeros_of(expansion: &Expansion) -> Vec<f64> {
         .collect()
 }
 
-/// Where a function with one minimum between `a` and `b` has it, to where rounding hides it.
+/// Place of the minimum of a function with one minimum between `a` and `b`, to where rounding hides it.
 fn least(function: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
     /// Each keeps two thirds: 1e-9 of the bracket, to the square of which the minimum is flat.
     const STEPS: usize = 50;

@@ -27,7 +27,7 @@ impl Draws {
         low + (high - low) * self.uniform()
     }
 
-    /// Of any order of magnitude between two.
+    /// Draws a number between two, of any order of magnitude.
     fn size(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
