@@ -40,7 +40,7 @@ impl<C: Spectrum> Background<C> {
         self.constant.max_channel() + maps.sum::<f64>()
     }
 
-    /// Whether there is no light at all.
+    /// True if there is no light at all.
     #[must_use]
     pub fn is_dark(&self) -> bool {
         self.constant == C::ZERO && self.maps.is_empty()

@@ -21,7 +21,7 @@ pub struct Camera {
     resolution: [u32; 2],
 }
 
-/// Where a point appears.
+/// Image of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// Column and row.
@@ -30,7 +30,7 @@ pub struct Projection {
     pub distance: f64,
     /// The direction of travel of light from the point to the pinhole, of unit length.
     pub towards_camera: DVec3,
-    /// What the flux density per volume at the point adds to the pixel's radiance, apart from transmittance:
+    /// Contribution of the flux density per volume at the point to the pixel's radiance, apart from transmittance:
     /// 1/(distance² · cos³θ · pixel area on the plane at distance 1) \[1/length²\].
     ///
     /// A pixel is (1/A) ∫ L dA over its area A on that plane, dA = dω/cos³θ, and dV = distance² dω ds.
@@ -111,7 +111,7 @@ impl Camera {
         Line { origin: self.origin, direction }
     }
 
-    /// Where a point appears in the image; `None` beside it, behind the camera, or at the pinhole itself.
+    /// Image of a point; `None` beside the picture, behind the camera, or at the pinhole itself.
     #[must_use]
     pub fn project(&self, point: DVec3) -> Option<Projection> {
         let offset = point - self.origin;

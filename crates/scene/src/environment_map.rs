@@ -97,7 +97,7 @@ impl<C: Spectrum> EnvironmentMap<C> {
         [row, row + 1].map(|edge| (PI * edge as f64 / self.height as f64).cos())
     }
 
-    /// Of a pixel in this row \[sr\].
+    /// Solid angle of a pixel in this row \[sr\].
     fn solid_angle(&self, row: usize) -> f64 {
         let [above, below] = self.cosines(row);
         TAU / self.width as f64 * (above - below)

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 pub enum Source<C> {
     /// Shines into all directions alike.
     Point {
-        /// Where it is.
+        /// Place of the light.
         position: DVec3,
         /// Φ \[power\].
         power: C,
@@ -24,12 +24,12 @@ pub enum Source<C> {
     },
 }
 
-/// How a point sees a [`Source`], without what the medium between takes away.
+/// Connection of a point with a [`Source`], without what the medium between takes away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Connection<C> {
     /// The direction from the point to the light, of unit length.
     pub towards: DVec3,
-    /// How far the light is \[length\]; `None` if infinitely.
+    /// Distance to the light \[length\]; `None` if infinite.
     pub distance: Option<f64>,
     /// Power per area across that direction: Φ/(4π distance²) for a point.
     pub irradiance: C,
@@ -57,7 +57,7 @@ impl<C: Spectrum> Source<C> {
         Ok(Self::Directional { direction: direction.try_normalize().ok_or(zero)?, irradiance })
     }
 
-    /// How `point` sees this light; `None` at the position of a point light itself, a set of measure zero.
+    /// Connects `point` with this light; `None` at the position of a point light itself, a set of measure zero.
     #[inline]
     #[must_use]
     pub fn connect(&self, point: DVec3) -> Option<Connection<C>> {
@@ -94,7 +94,7 @@ pub struct Lights<C> {
 /// A photon on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission<C> {
-    /// Where it starts.
+    /// Start of its path.
     pub origin: DVec3,
     /// Its direction of travel, of unit length.
     pub direction: DVec3,

@@ -40,7 +40,7 @@ pub trait Spectrum:
     /// The mean of the channels: what one number says of a colour.
     fn mean(self) -> f64;
 
-    /// Whether every channel is a finite number.
+    /// True if every channel is a finite number.
     fn is_finite(self) -> bool;
 
     /// Red, green and blue; three times the same if gray.

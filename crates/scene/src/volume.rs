@@ -9,7 +9,7 @@ use glam::DVec3;
 pub struct Volume<M, P, C> {
     /// The extinction, shared by all channels.
     pub medium: M,
-    /// Where it is.
+    /// Bounds of the medium: it ends there.
     pub bounds: Bounds,
     /// σ_s/σ_t per channel \[1\]; above 1 only where the scene permits a gain.
     pub albedo: C,

@@ -1,4 +1,4 @@
-//! What a ray asks of the surfaces of a scene, and the answer where there are none.
+//! Queries of rays to the surfaces of a scene, and their answers where there are no surfaces.
 
 use super::{Surface, TowardsSample};
 use crate::Spectrum;
@@ -21,20 +21,20 @@ pub struct Segment {
     pub to: Option<usize>,
 }
 
-/// Where a ray meets a surface.
+/// Intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<'s, C> {
     /// From the start of the ray \[length\].
     pub distance: f64,
     /// The point.
     pub position: DVec3,
-    /// Of unit length, on the side from where the ray comes.
+    /// Normal of unit length, on the side from where the ray comes.
     pub normal: DVec3,
-    /// Whether that is the outer side.
+    /// True if that is the outer side.
     pub outside: bool,
     /// The surface that was met.
     pub index: usize,
-    /// That surface.
+    /// The surface itself.
     pub surface: &'s Surface<C>,
 }
 
@@ -42,16 +42,16 @@ pub struct Hit<'s, C> {
 ///
 /// A scene without surfaces has [`NoSurfaces`], and compiles to no surface code.
 pub trait Geometry<C: Spectrum> {
-    /// Whether there are no surfaces, known at compile time.
+    /// True if there are no surfaces, known at compile time.
     const IS_EMPTY: bool;
 
-    /// All of them.
+    /// All surfaces, in the order of their indices.
     fn surfaces(&self) -> &[Surface<C>];
 
     /// The indices of those that emit.
     fn emitters(&self) -> &[usize];
 
-    /// Whether a surface is specular.
+    /// True if a surface is specular.
     fn has_specular(&self) -> bool;
 
     /// The nearest surface on a segment; its end counts for nothing but its length.
@@ -63,7 +63,7 @@ pub trait Geometry<C: Spectrum> {
     /// The nearest of some surfaces, which [`reaching`](Self::reaching) names.
     fn intersect_among(&self, segment: &Segment, among: u64) -> Option<Hit<'_, C>>;
 
-    /// Whether any surface lies between the ends of a segment. A specular surface is in the way, too.
+    /// True if a surface lies between the ends of a segment. A specular surface is in the way, too.
     fn is_occluded(&self, segment: &Segment) -> bool;
 
     /// A direction from `point` towards the surface `index`, on which the point must not lie; see [`Shape::sample_towards`](super::Shape::sample_towards).

@@ -4,7 +4,7 @@ use super::Shape;
 use crate::{SceneError, Spectrum};
 use glam::DVec3;
 
-/// How a surface scatters.
+/// Law by which a surface scatters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material<C> {
     /// Lambert: the same radiance into all directions of the side that is lit; nothing passes.
@@ -24,7 +24,7 @@ pub enum Material<C> {
 /// A shape with what it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface<C> {
-    /// Where it is.
+    /// Shape and place of the surface.
     pub shape: Shape,
     /// Its reflection and refraction of light.
     pub material: Material<C>,
@@ -48,19 +48,19 @@ impl<C: Spectrum> Surface<C> {
         Ok(Self { shape, material, emission })
     }
 
-    /// Whether it shines.
+    /// True if the surface emits light.
     #[must_use]
     pub fn emits(&self) -> bool {
         self.emission != C::ZERO
     }
 
-    /// Whether light cannot pass.
+    /// True if light cannot pass the surface.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         !matches!(self.material, Material::Dielectric { .. })
     }
 
-    /// Whether it has one direction for one direction: nothing can be connected with it.
+    /// True if the surface has one direction for one direction: nothing can be connected with it.
     #[must_use]
     pub fn is_specular(&self) -> bool {
         !matches!(self.material, Material::Diffuse { .. })

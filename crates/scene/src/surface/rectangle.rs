@@ -12,7 +12,7 @@ pub struct Rectangle {
     pub(super) corner: DVec3,
     pub(super) edge_u: DVec3,
     pub(super) edge_v: DVec3,
-    /// Of unit length.
+    /// Normal of the outer side, of unit length.
     pub(super) normal: DVec3,
     pub(super) area: f64,
     /// In the plane, with dual_u · edge_u = 1 and dual_u · edge_v = 0: the coordinate u of a point is dual_u · (point − corner).
@@ -78,7 +78,7 @@ impl Rectangle {
         AreaSample { position: self.corner + u * self.edge_u + v * self.edge_v, normal: self.normal }
     }
 
-    /// Of the nearest point: in the interior, or on one of the edges.
+    /// Distance of `point` from the nearest point of the rectangle \[length\]: in the interior, or on one of the edges.
     pub(super) fn distance_to(&self, point: DVec3) -> f64 {
         let offset = point - self.corner;
         let (u, v) = (offset.dot(self.dual_u), offset.dot(self.dual_v));

@@ -4,7 +4,7 @@ use super::{Rectangle, Sphere};
 use fairflight_media::Line;
 use glam::DVec3;
 
-/// Where a surface is.
+/// Shape and place of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// Flat.
@@ -25,7 +25,7 @@ pub struct AreaSample {
 /// A direction from a point towards a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TowardsSample {
-    /// Of unit length.
+    /// Direction of unit length.
     pub direction: DVec3,
     /// To the surface along it \[length\].
     pub distance: f64,
@@ -47,7 +47,7 @@ impl Shape {
         }
     }
 
-    /// Whether the shape blocks a segment of a line that ends, at `length`, on this very shape; `leaves` as in
+    /// True if the shape blocks a segment of a line that ends, at `length`, on this very shape; `leaves` as in
     /// [`intersect`](Self::intersect).
     #[inline]
     #[must_use]
@@ -114,14 +114,14 @@ impl Shape {
         }
     }
 
-    /// Whether it has an inside.
+    /// True if the shape has an inside.
     #[inline]
     #[must_use]
     pub fn is_closed(&self) -> bool {
         matches!(self, Self::Sphere(_))
     }
 
-    /// Whether a point lies inside; nothing lies inside a rectangle.
+    /// True if a point lies inside; nothing lies inside a rectangle.
     #[must_use]
     pub fn encloses(&self, point: DVec3) -> bool {
         match self {
@@ -130,7 +130,7 @@ impl Shape {
         }
     }
 
-    /// Whether the shape comes within `radius` of `center`.
+    /// True if the shape comes within `radius` of `center`.
     #[must_use]
     pub fn reaches(&self, center: DVec3, radius: f64) -> bool {
         match self {
