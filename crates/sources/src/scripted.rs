@@ -24,7 +24,7 @@ impl Scripted {
         Self { variates, drawn: 0 }
     }
 
-    /// How many variates are left.
+    /// Number of variates that are left.
     #[must_use]
     pub fn remaining(&self) -> usize {
         self.variates.len() - self.drawn

@@ -1,4 +1,4 @@
-//! What the sets share: exact uniform integers, and numbers of the lattice from a stratum and what lies inside of it.
+//! Parts that the sets share: exact uniform integers, and numbers of the lattice from a stratum and what lies inside of it.
 
 use crate::Seeded;
 use rand::rand_core::Rng;

@@ -91,10 +91,10 @@ impl PointSetError {
 /// **Law.** For each index i by itself, over the seeds that replicas are made from, the coordinates of point i are independent and each
 /// uniform on the lattice k · 2^-53. Nothing is promised of two points together but what the set is known for.
 pub trait PointSet {
-    /// How many coordinates the set orders; variates beyond are independent.
+    /// Number of coordinates that the set orders; variates beyond are independent.
     fn dimensions(&self) -> usize;
 
-    /// How many points the set orders; the sources of points beyond are independent from the first variate on.
+    /// Number of points that the set orders; the sources of points beyond are independent from the first variate on.
     fn points(&self) -> u64;
 
     /// The seed of the replica.

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::UniformSource;
 
-    /// Of 2^k points one lies in each of the 2^k rectangles of every shape: the first two coordinates are a (0, k, 2)-net.
+    /// One of 2^k points lies in each of the 2^k rectangles of every shape: the first two coordinates are a (0, k, 2)-net.
     #[test]
     fn the_first_two_coordinates_are_a_net() {
         const K: u32 = 6;
