@@ -32,7 +32,7 @@ pub const TAIL_INFLATION: f64 = 4.0;
 /// The most by which a single value may shift z where a z-test rejects.
 pub const MOST_OF_ONE: f64 = 0.25;
 
-/// What the skewness and the excess kurtosis of a sample are multiplied with before they are believed.
+/// Factor of the skewness and the excess kurtosis of a sample before they are believed.
 pub const SAMPLE_SHAPE_FACTOR: f64 = 2.0;
 
 /// A two-sided normal test of the mean of N values, with the conditions under which its level holds.
@@ -67,7 +67,7 @@ impl NormalApproximation {
         24.0 * LN_2 / self.critical_z.powi(4)
     }
 
-    /// Whether n values of this shape suffice, for a z with the exact standard error.
+    /// True if n values of this shape suffice, for a z with the exact standard error.
     #[must_use]
     pub fn is_adequate(&self, skewness: f64, excess_kurtosis: f64, n: f64) -> bool {
         n >= self.samples_needed(skewness, excess_kurtosis)

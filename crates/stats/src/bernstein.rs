@@ -5,7 +5,7 @@
 //! Source: Bernstein 1924; Boucheron, Lugosi and Massart, "Concentration Inequalities" (2013), corollary 2.11. It also
 //! holds with any upper bound of V in the place of V.
 
-/// What is known of one value: enough for Bernstein's inequality.
+/// Facts about one value: enough for Bernstein's inequality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bernstein {
     /// Variance V of one value, or an upper bound of it; the square of the unit of a value.

@@ -13,13 +13,13 @@ use crate::halving::quantile;
 use crate::policy::POWER;
 use statrs::function::gamma::gamma_ur;
 
-/// How much larger the tail of the statistic may be than that of its limit.
+/// Factor by which the tail of the statistic may exceed that of its limit.
 const SAFETY: f64 = 4.0;
 
 /// The part of [`SAFETY`] that is left to the skewness of a cell.
 const SKEWNESS: f64 = 3.0;
 
-/// How near to 1 the probabilities must add up.
+/// Greatest deviation from 1 of the sum of the probabilities.
 const SUM_TOLERANCE: f64 = 1e-9;
 
 /// P(chi-square with `degrees_of_freedom` > x).

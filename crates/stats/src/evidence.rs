@@ -4,7 +4,7 @@ use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome};
 use crate::reference::Reference;
 use crate::verdict::MeanTest;
 
-/// What the test of the mean says.
+/// Result of the test of the mean.
 #[derive(Clone)]
 pub(crate) struct MeanJudgement {
     pub(crate) test: MeanTest,

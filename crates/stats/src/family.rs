@@ -14,7 +14,7 @@ pub fn sidak_level(family_level: f64, checks: usize) -> f64 {
     -((-family_level).ln_1p() / checks as f64).exp_m1()
 }
 
-/// Which of the p-values Holm's step-down procedure rejects, in the order given; none for no p-values.
+/// Returns for each p-value, in the order given, whether Holm's step-down procedure rejects it; nothing for no p-values.
 ///
 /// In ascending order the i-th of m (from zero) is rejected while p <= family_level/(m - i). The probability of any
 /// false alarm is at most `family_level` whatever the dependence. Source: Holm 1979. A NaN is never rejected and

@@ -5,7 +5,7 @@ use crate::policy::MAX_DETECTABLE_RELATIVE_BIAS;
 /// What a test of goodness of fit says, with the numbers that led to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoodnessOfFit {
-    /// Whether the samples follow the distribution; `None` = not testable at this N.
+    /// True if the samples follow the distribution; `None` = not testable at this N.
     pub sound: Option<bool>,
     /// The statistic: Pearson's sum, or Kolmogorov's distance; 0 without a test.
     pub statistic: f64,

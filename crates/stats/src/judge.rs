@@ -105,7 +105,7 @@ pub fn judge(measured: &Moments, reference: &Reference, alpha: f64) -> Verdict {
     verdict
 }
 
-/// What is to be known of an estimated reference before anything that follows from it.
+/// Warning about an estimated reference, before anything that follows from it; empty for a certified one.
 fn uncertified(reference: &Reference) -> String {
     let Certainty::Estimated { low, high } = reference.certainty else { return String::new() };
     let relative = |bound: f64| if reference.mean == 0.0 { bound } else { bound / reference.mean };
@@ -127,7 +127,7 @@ fn without_degenerate_scores(reference: Reference) -> Reference {
     }
 }
 
-/// What in the sample contradicts the facts of the reference, independently of any statistics.
+/// Contradiction of the sample to the facts of the reference, independently of any statistics; `None` without one.
 fn contradiction(measured: &Moments, reference: &Reference, mean: f64) -> Option<String> {
     let (minimum, maximum) = (measured.minimum()?, measured.maximum()?);
     if !mean.is_finite() {

@@ -179,7 +179,7 @@ fn binomial(n: u64, successes: f64, reference: &Reference, high: f64, level: f64
     .decide()
 }
 
-/// What Bernstein's inequality needs to know of bounded samples.
+/// Facts about bounded samples that Bernstein's inequality needs.
 #[derive(Clone, Copy)]
 struct Bounds(Bernstein);
 

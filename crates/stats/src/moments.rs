@@ -259,7 +259,7 @@ impl Moments {
         (self.count > 0).then_some(self.maximum)
     }
 
-    /// Whether M4 and M2 can be trusted: N M4 >= M2^2 by Cauchy-Schwarz, unless the fourth powers underflowed.
+    /// True if M4 and M2 can be trusted: N M4 >= M2^2 by Cauchy-Schwarz, unless the fourth powers underflowed.
     fn shape_exists(&self) -> bool {
         const ROUNDING: f64 = 1e-6;
         self.m2 > 0.0 && self.count as f64 * (self.m4 / self.m2) >= self.m2 * (1.0 - ROUNDING)

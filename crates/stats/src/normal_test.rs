@@ -18,7 +18,7 @@ struct Shape {
 const OF_THE_LAW: &str = "of the law";
 
 impl Shape {
-    /// Of the law where all of it is known, else of the sample, under stricter limits.
+    /// The shape of the law where all of it is known, else that of the sample, under stricter limits.
     fn of(measured: &Moments, reference: &Reference, test: &NormalApproximation) -> Self {
         let closed =
             reference.closed_moments().and_then(|moments| moments.skewness().zip(moments.excess_kurtosis()));
@@ -47,10 +47,10 @@ pub(crate) struct ZTest {
     pub(crate) detectable: Option<f64>,
     /// The N that its shape and its power ask for.
     pub(crate) samples_needed: f64,
-    /// Whether it may reject: variance and shape are those of the law, or its tails are known to be mild, and no single sample makes up
+    /// True if it may reject: variance and shape are those of the law, or its tails are known to be mild, and no single sample makes up
     /// much of the deviation. A sample's own are blind to what that sample lacks: otherwise they agree, and do not reject.
     pub(crate) may_reject: bool,
-    /// What the standard error is, in words.
+    /// Name of the standard error, in words.
     pub(crate) name: &'static str,
 }
 

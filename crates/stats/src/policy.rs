@@ -1,4 +1,4 @@
-//! What is promised of every judgement: its false alarm, its power, and when agreement says something.
+//! Promises of every judgement: its false alarm, its power, and when agreement says something.
 
 /// False alarm of one call that reports promise.
 pub const DEFAULT_ALPHA: f64 = 1e-6;
@@ -12,5 +12,5 @@ pub const POWER: f64 = 0.99;
 /// half; a run that could not even see half of the mean gone is no evidence.
 pub const MAX_DETECTABLE_RELATIVE_BIAS: f64 = 0.5;
 
-/// What a test says: `Some(true)` = agrees, `Some(false)` = differs, `None` = not testable.
+/// Outcome of a test: `Some(true)` = agrees, `Some(false)` = differs, `None` = not testable.
 pub(crate) type Outcome = Option<bool>;

@@ -1,4 +1,4 @@
-//! What a measured mean and variance are judged against.
+//! References that a measured mean and variance are judged against.
 
 use crate::closed_moments::ClosedMoments;
 
@@ -8,7 +8,7 @@ use crate::closed_moments::ClosedMoments;
 /// tau d of exp(-tau), and tau is |ln mean|. 1e-12 covers sums and products of 1e4 roundings of 1e-16 each.
 pub const ROUNDING: f64 = 1e-12;
 
-/// What is known of the values that one sample can take.
+/// Known facts about the values that one sample can take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scores {
     /// A sample is 0 or `high`, up to rounding: the number of successes has a binomial law.
@@ -27,7 +27,7 @@ pub enum Scores {
     Unbounded,
 }
 
-/// How the error of a reference is known.
+/// Certainty of the error of a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Certainty {
     /// Proved: a closed form, or a quadrature whose enclosure holds between its nodes as well.
@@ -42,7 +42,7 @@ pub enum Certainty {
     },
 }
 
-/// What is known of values so rare and so large that a sample may lack them.
+/// Known facts about values so rare and so large that a sample may lack them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tails {
     /// Nothing: the sample's own standard error and shape are blind to them, and do not reject.
@@ -58,7 +58,7 @@ pub struct Reference {
     pub mean: f64,
     /// Bound of the absolute error of `mean`; zero for a closed form.
     pub error: f64,
-    /// Whether `error` was proved or estimated.
+    /// Certainty of `error`: proved or estimated.
     pub certainty: Certainty,
     /// Moments of one sample in closed form, where there is one. Their mean is taken to be `mean`.
     pub moments: Option<ClosedMoments>,
@@ -66,7 +66,7 @@ pub struct Reference {
     pub variance_bound: Option<f64>,
     /// The values that one sample can take.
     pub scores: Scores,
-    /// What is known of the tails of its law.
+    /// Known facts about the tails of its law.
     pub tails: Tails,
 }
 
@@ -137,13 +137,13 @@ impl Reference {
         if size == 0.0 { 0.0 } else { ROUNDING * (1.0 + size.ln().abs()) * size }
     }
 
-    /// What a mean may deviate without any evidence against it: the reference's uncertainty and rounding.
+    /// Deviation of a mean without any evidence against it: the reference's uncertainty and rounding.
     #[must_use]
     pub fn allowance(&self) -> f64 {
         self.uncertainty() + self.rounding()
     }
 
-    /// Whether a standard deviation of one sample is nothing but rounding.
+    /// True if a standard deviation of one sample is nothing but rounding.
     #[must_use]
     pub(crate) fn is_rounding(&self, variance: f64) -> bool {
         variance.sqrt() <= self.rounding()

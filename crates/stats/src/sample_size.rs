@@ -11,7 +11,7 @@ use crate::reference::{Certainty, Reference, Scores};
 /// The N from which on [`judge`](crate::judge()) at the level `alpha` tests the mean and finds a relative bias of `bias` with
 /// probability [`POWER`].
 ///
-/// Of two-valued samples by the exact binomial test; of others by the z-test, adequate for the shape of the law, or by
+/// Two-valued samples are judged by the exact binomial test; others by the z-test, adequate for the shape of the law, or by
 /// Bernstein's inequality, whichever is possible first. 1 for a law without variance, infinite where no N suffices (moments
 /// that are infinite, an error of the reference as large as the bias). `None` where variance, skewness or kurtosis are not
 /// known and nothing bounds the samples: then only samples tell.
@@ -52,9 +52,9 @@ pub(crate) fn for_power(test: &NormalApproximation, reference: &Reference, varia
     }
 }
 
-/// What Bernstein's inequality needs to know of bounded samples.
+/// Facts about bounded samples that Bernstein's inequality needs; `None` for samples without bounds.
 ///
-/// Where the variance is unknown it is at most (maximum - mean)(mean - minimum) (Bhatia and Davis 2000), and a quarter of the square
+/// An unknown variance is at most (maximum - mean)(mean - minimum) (Bhatia and Davis 2000), and a quarter of the square
 /// of their distance whatever the mean.
 pub(crate) fn bernstein_law(reference: &Reference) -> Option<Bernstein> {
     let Scores::Bounded { minimum, maximum } = reference.scores else { return None };

@@ -10,7 +10,7 @@ use crate::moments::Moments;
 use crate::policy::Outcome;
 use crate::reference::{Reference, Scores};
 
-/// What the test of the variance says.
+/// Result of the test of the variance.
 pub(crate) struct VarianceJudgement {
     pub(crate) outcome: Outcome,
     pub(crate) z: Option<f64>,

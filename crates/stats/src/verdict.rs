@@ -1,6 +1,6 @@
 //! The outcome of judging one measured mean and variance, with every number that led to it.
 
-/// Where the standard error of the mean comes from.
+/// Source of the standard error of the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StandardErrorSource {
     /// From the moments of the law.
@@ -9,7 +9,7 @@ pub enum StandardErrorSource {
     Sample,
 }
 
-/// How the mean was tested.
+/// Test of the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeanTest {
     /// Exact binomial test of the number of successes.
@@ -44,17 +44,17 @@ pub struct Verdict {
     /// Smallest |bias|/|reference| of the mean with which this call would have agreed with a probability below 0.01; `None`
     /// for a reference of zero or without a test.
     pub detectable_relative_bias: Option<f64>,
-    /// Whether mean and variance agree with the reference; `None` = not testable at this N.
+    /// True if mean and variance agree with the reference; `None` = not testable at this N.
     pub sound: Option<bool>,
     /// Why, in words.
     pub reason: String,
-    /// Where `sound` is `None`: the N that would make the mean testable, possibly infinite; `None` if that is unknown.
+    /// N that would make the mean testable where `sound` is `None`, possibly infinite; `None` if that is unknown.
     pub samples_needed: Option<f64>,
     /// The N from which on a normal approximation of the mean holds at this level, by the shape of the law where that is known,
     /// else of the sample; infinite for a shape that is neither. How near to it a run comes is how much another seed may change.
     pub normal_samples: f64,
-    /// Where the standard error of the mean comes from.
+    /// Source of the standard error of the mean.
     pub standard_error_source: StandardErrorSource,
-    /// How the mean was tested.
+    /// Test by which the mean was judged.
     pub mean_test: MeanTest,
 }
