@@ -14,7 +14,7 @@ const SHORTEST_DESCRIPTOR: usize = 36;
 const FLOAT_TREE: &str = "Tree_float_5_4_3";
 const HALF_SUFFIX: &str = "_HalfFloat";
 
-/// What a file says about one of its grids, without the grid having been read.
+/// Description of a grid by its file, without the grid having been read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GridInfo {
     /// The grid's name; grids that share a name are numbered, as in `density[1]`.
@@ -23,7 +23,7 @@ pub struct GridInfo {
     pub value_type: String,
     /// The type of its tree, as `Tree_float_5_4_3`: value type, then the logarithms of the nodes' sides.
     pub tree_type: String,
-    /// Whether 32-bit values are stored with 16 bits. They are read as the 32-bit floats that these bits stand for.
+    /// True if 32-bit values are stored with 16 bits. They are read as the 32-bit floats that these bits stand for.
     pub saved_as_half: bool,
     /// The grid whose tree this one shares, if it has none of its own. Such grids are not read.
     pub instance_of: Option<String>,
@@ -43,11 +43,11 @@ pub(crate) struct Descriptor {
     plain_name: String,
     /// The flags that say how values are stored.
     pub(crate) compression: u32,
-    /// Where the metadata end and the transform begins.
+    /// Offset at which the metadata end and the transform begins.
     pub(crate) transform_pos: usize,
-    /// Where the tree's shape ends and its leaf values begin.
+    /// Offset at which the tree's shape ends and its leaf values begin.
     pub(crate) block_pos: usize,
-    /// Where the grid ends.
+    /// Offset of the end of the grid.
     pub(crate) end_pos: usize,
 }
 
@@ -193,7 +193,7 @@ fn usual(grids: &[Descriptor]) -> Result<&Descriptor, VdbError> {
     }
 }
 
-/// Whether the values of a grid of this class are no property of its voxels. OpenVDB compares classes trimmed
+/// True if the values of a grid of this class are no property of its voxels. OpenVDB compares classes trimmed
 /// and in lower case, and takes every other text for an unknown class.
 fn is_no_volume(class: &str) -> bool {
     matches!(class.trim().to_lowercase().as_str(), "level set" | "staggered")

@@ -11,7 +11,7 @@ const ZIP: u32 = 1;
 const ACTIVE_MASK: u32 = 2;
 const BLOSC: u32 = 4;
 
-/// How a grid stores its values, and the buffers that decoding goes through.
+/// Encoding of a grid's values, and the buffers that decoding goes through.
 ///
 /// The buffers grow to the largest node at most: 32^3 values of four bytes.
 pub(crate) struct Codec {
@@ -30,7 +30,7 @@ impl Codec {
         Ok(Self { flags, half, plain: Vec::new(), scratch: Vec::new(), inflate: Decompress::new(true) })
     }
 
-    /// Whether nodes leave out their inactive values.
+    /// True if nodes leave out their inactive values.
     pub(crate) fn omits_inactive(&self) -> bool {
         self.flags & ACTIVE_MASK != 0
     }

@@ -14,9 +14,9 @@ pub enum VdbError {
     /// The file ends before the named part of it does.
     #[error("the file is cut off: {what} reaches past byte {at}")]
     Truncated {
-        /// Where the bytes that are there end.
+        /// The end of the bytes that are there.
         at: usize,
-        /// What was being read.
+        /// The part that was being read.
         what: String,
     },
     /// The file format is older or newer than the versions 222 to 224 that this reader knows.
@@ -82,9 +82,9 @@ pub enum VdbError {
     /// The bytes contradict the format.
     #[error("the file is corrupt at byte {at}: {what}")]
     Corrupt {
-        /// Where the contradiction was noticed.
+        /// The offset at which the contradiction was noticed.
         at: usize,
-        /// What is wrong there.
+        /// The contradiction, in words.
         what: String,
     },
     /// The number of active voxels is not the one that the file's own metadata states.
@@ -106,7 +106,7 @@ pub enum VdbError {
     /// Reading would need more memory than a file of this size can justify, or a count does not fit its type.
     #[error("{what} is too large: {asked}, where at most {limit} is allowed")]
     TooLarge {
-        /// What would not fit.
+        /// The part that would not fit.
         what: String,
         /// The amount asked for.
         asked: u64,

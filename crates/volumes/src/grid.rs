@@ -21,7 +21,7 @@ pub fn grids(bytes: &[u8]) -> Result<Vec<GridInfo>, VdbError> {
 
 /// Reads the float grid of the given name; without a name `density`, or else the only float grid of the file.
 ///
-/// Of several grids with one name, `density[1]` means the second and `density` the first.
+/// With several grids of one name, `density[1]` means the second and `density` the first.
 ///
 /// # Errors
 /// Everything that [`VdbError`] lists: the grid is missing, ambiguous, of another type, a level set, damaged,
@@ -77,7 +77,7 @@ pub struct VoxelGrid {
 }
 
 impl VoxelGrid {
-    /// What the file says about the grid.
+    /// The file's description of the grid.
     #[must_use]
     pub fn info(&self) -> &GridInfo {
         &self.info
@@ -93,7 +93,7 @@ impl VoxelGrid {
         }
     }
 
-    /// Whether a voxel is active, by itself or as a part of an active tile.
+    /// True if a voxel is active, by itself or as a part of an active tile.
     #[must_use]
     pub fn is_active(&self, i: i32, j: i32, k: i32) -> bool {
         match self.tree.locate(i, j, k) {

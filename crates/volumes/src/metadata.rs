@@ -6,7 +6,7 @@ use crate::error::VdbError;
 /// Bytes of the shortest entry: three lengths, no text, no value.
 const SHORTEST_ENTRY: usize = 12;
 
-/// What the reader takes from a grid's metadata.
+/// Entries that the reader takes from a grid's metadata.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Metadata {
     /// `class`: "fog volume", "level set", ...

@@ -1,4 +1,4 @@
-//! What a tree holds in total, found in one walk over it, which also is where values that are not finite are refused.
+//! Totals of a tree, found in one walk over it, which also is where values that are not finite are refused.
 
 use crate::error::VdbError;
 use crate::tree::{LEAF_BITS, LOWER_BITS, Level, Slot, Tree, UPPER_BITS, is_on, slot_origin};

@@ -14,7 +14,7 @@ pub(crate) const UPPER_WORDS: usize = 512;
 /// Voxels of a leaf.
 pub(crate) const LEAF_SIZE: usize = 64 * LEAF_WORDS;
 
-/// What a slot holds.
+/// Content of a slot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Slot {
     /// The index of a node in the next level's arrays.
@@ -23,7 +23,7 @@ pub(crate) enum Slot {
     Tile { value: f32, active: bool },
 }
 
-/// What the tree has at a voxel.
+/// Value and activity of a voxel, or the leaf that holds them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Located {
     /// The index of the leaf that holds the voxel.

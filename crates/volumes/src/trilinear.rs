@@ -3,7 +3,7 @@
 use crate::grid::VoxelGrid;
 use crate::tree::{LEAF_BITS, LEAF_SIZE, Located, slot_of};
 
-/// Where the corners of a cell lie in a leaf, from its lowest corner: bit 2 of the corner steps in x, 1 in y, 0 in z.
+/// Offsets of the corners of a cell in a leaf, from its lowest corner: bit 2 of the corner steps in x, 1 in y, 0 in z.
 const CORNER_OFFSETS: [usize; 8] = [0, 1, 8, 9, 64, 65, 72, 73];
 /// Coordinates from here on are outside: with this bound a cell and its upper corners have 32-bit indices.
 const OUTSIDE: f64 = 2_147_483_646.0;

@@ -9,7 +9,7 @@ use fairflight_volumes::{FIXED_ALLOWANCE, MAX_EXPANSION, VdbError, grids, read_f
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 
-/// Where the end offset of the first grid lies in files whose only grid is a 32-bit float grid `density`.
+/// Bytes of the end offset of the first grid in files whose only grid is a 32-bit float grid `density`.
 const END_OFFSET: std::ops::Range<usize> = 0x74..0x7c;
 
 fn deterministic(cases: u32, seed: u64) -> ProptestConfig {
