@@ -1,4 +1,4 @@
-//! What happens to a light particle at one collision.
+//! Models of the collision of a light particle with the medium.
 //!
 //! A walk meets collisions at the rate of a *sampling extinction* σ_samp. At each it looks up σ_t and forms the ratio
 //! r = σ_diff / σ_samp, where σ_diff = σ_t − σ_main is the extinction that a control leaves (szirmay-kalos-2017 eq. 5

@@ -3,13 +3,13 @@
 use crate::Branch;
 use fairflight_sources::UniformSource;
 
-/// What happens at a collision with ratio `r = σ_diff / σ_samp`.
+/// A model of the collision with ratio `r = σ_diff / σ_samp`.
 ///
 /// **Law.** For every admitted r: `scattered(r)` has the expected energy a·r, `transmitted(r)` the expected energy
 /// 1 − r (szirmay-kalos-2017 eq. 8), and [`transmit`](Self::transmit) draws the transmitted weight with exactly the
 /// probability and energy that `transmitted(r)` states.
 pub trait CollisionModel {
-    /// Whether the model is defined at `r`: where it is not, its probabilities are none.
+    /// True if the model is defined at `r`; where it is not, it has no probabilities.
     fn admits(&self, r: f64) -> bool;
 
     /// The scattered particle.

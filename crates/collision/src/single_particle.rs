@@ -3,12 +3,13 @@
 use crate::{Albedo, Branch, CollisionModel, Outcome, SingleOutcome};
 use fairflight_sources::UniformSource;
 
-/// How the probabilities q_scat and q_tran are chosen from a·|r| and |1 − r|.
+/// Choice of the probabilities q_scat and q_tran from a·|r| and |1 − r|.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Version {
-    /// As they are: the particle may be absorbed, its energy stays ±1. Only where r ≥ 0 and their sum is at most 1.
+    /// The probabilities a·|r| and |1 − r| themselves: the particle may be absorbed, its energy stays ±1. Only where r ≥ 0 and their sum
+    /// is at most 1.
     Terminating,
-    /// Divided by their sum: exactly one particle survives, its energy is ± the sum (eq. 12).
+    /// The same divided by their sum: exactly one particle survives, its energy is ± the sum (eq. 12).
     NonTerminating,
     /// Non-terminating where r < 1 or the sum exceeds 1, terminating elsewhere (SimulateParticle, section 4.1).
     Adaptive,
@@ -17,7 +18,7 @@ pub enum Version {
 /// Keeps one particle, or none, at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingleParticle {
-    /// How the probabilities are chosen.
+    /// Choice of the probabilities.
     pub version: Version,
     /// σ_s / σ_t of matter. It enters the probabilities, and so the variance of transmittance too.
     pub albedo: Albedo,
@@ -32,7 +33,7 @@ impl SingleParticle {
         self.albedo.get() * r.abs() + (1.0 - r).abs()
     }
 
-    /// Whether the probabilities at `r` are taken as they are.
+    /// True if the probabilities at `r` are a·|r| and |1 − r| themselves.
     #[inline]
     fn terminates(&self, r: f64) -> bool {
         match self.version {
@@ -94,7 +95,7 @@ impl CollisionModel for SingleParticle {
         Branch { probability: wanted / sum, energy, absence: a * r.abs() / sum, excess }
     }
 
-    /// Of |r| and |1 − r|; and where an adaptive particle turns from terminating to not.
+    /// Ratios at which |r| or |1 − r| has its kink, and the one at which an adaptive particle turns from terminating to not.
     fn kinks(&self) -> Vec<f64> {
         vec![0.0, 1.0, 2.0 / (1.0 + self.albedo.get())]
     }
