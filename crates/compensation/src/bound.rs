@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-/// What the brightness of a scene says about the bound.
+/// Brightness of a scene, as far as the bound depends on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brightness {
     /// The greatest radiance that anything emits.

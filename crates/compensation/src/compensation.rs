@@ -50,13 +50,13 @@ impl<'m> Compensation<'m> {
         Self { options, mean, tried: 0, inside: 0 }
     }
 
-    /// How points of eye rays must be connected for this strategy.
+    /// Returns the pairing of eye points and virtual point lights that this strategy needs.
     #[must_use]
     pub fn pairing(&self) -> Pairing {
         self.options.strategy.pairing()
     }
 
-    /// How many compensation vertices were tried, and how many of them lay where G > b.
+    /// Number of compensation vertices tried so far, and of those among them that lay where G > b.
     #[must_use]
     pub fn vertices(&self) -> (u64, u64) {
         (self.tried, self.inside)
@@ -118,7 +118,7 @@ impl<'m> Compensation<'m> {
 }
 
 impl Strategy {
-    /// How points of eye rays are connected.
+    /// Returns the pairing of eye points and virtual point lights that the strategy needs.
     #[must_use]
     pub fn pairing(self) -> Pairing {
         match self {
@@ -170,7 +170,7 @@ mod tests {
     fn lit() -> Scene<EmptySpace> {
         vacuum(room(0.5), vec![Source::point(0.25 * DVec3::Z, 4.0 * PI).unwrap()])
     }
-    /// What the light adds at either surface, per reflectance.
+    /// Radiance that the light adds at either surface, per reflectance.
     const DIRECT: f64 = 16.0 * FRAC_1_PI;
 
     fn lights() -> [Vpl<f64>; 3] {

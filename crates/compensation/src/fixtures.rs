@@ -21,10 +21,10 @@ pub(crate) struct Scene<M> {
 pub(crate) type SceneGather<'s, M> =
     Gather<'s, MadeOf<f64, M, HenyeyGreenstein, Surfaces<f64>, Uniform, Regular>>;
 
-/// Of the haze.
+/// Extinction of the haze \[1/length\].
 pub(crate) const SIGMA_T: f64 = 0.5;
 pub(crate) const ALBEDO: f64 = 0.75;
-/// Of each surface.
+/// Reflectance of each surface \[1\].
 pub(crate) const REFLECTANCE: f64 = 0.5;
 
 impl<M: LineThickness> Scene<M> {

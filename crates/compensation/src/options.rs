@@ -1,6 +1,6 @@
 //! Choices of a correction, as values.
 
-/// How compensation vertices go with virtual point lights (engelhardt-2013 section 4.3, fig. 6).
+/// Pairing of compensation vertices with virtual point lights (engelhardt-2013 section 4.3, fig. 6).
 ///
 /// With s_k(y) = connection(y, k) + w(x)·s_k(x) and s(y) = w(x)·(D(x) + s(x)) the light at y is D(y) + s(y) + Σ_k s_k(y): every strategy is a
 /// way to sum this, where D is the light of emitters, x a compensation vertex and w its weight.
@@ -16,7 +16,7 @@ pub enum Strategy {
     OneToOne,
 }
 
-/// How far away compensation vertices are placed.
+/// Law of the distance at which a compensation vertex is placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
     /// By a free flight, which may end beyond the bounding region and is then lost (raab-2008 section 4.2).
@@ -34,12 +34,12 @@ pub enum TransmittanceUse {
     Approximate,
 }
 
-/// Whether surfaces are seen between a point and its compensation vertex (engelhardt-2013 section 4.4).
+/// Surfaces that are seen between a point and its compensation vertex (engelhardt-2013 section 4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
-    /// All of them.
+    /// Every surface.
     Full,
-    /// Those that come within the bounding region of the point, found once per point: what lies further away cannot matter, and nothing
+    /// Surfaces that come within the bounding region of the point, found once per point: what lies further away cannot matter, and nothing
     /// is lost.
     Local,
     /// None from points of the medium: their vertices lie in the medium only, and may lie behind a surface. Biased by design near
@@ -50,9 +50,9 @@ pub enum Visibility {
 /// All choices of a correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompensationOptions {
-    /// How vertices and lights go together.
+    /// Pairing of vertices and lights.
     pub strategy: Strategy,
-    /// How far away vertices are.
+    /// Law of the distance of vertices.
     pub placement: Placement,
     /// The transmittance to them.
     pub transmittance: TransmittanceUse,

@@ -1,4 +1,4 @@
-//! Where a compensation vertex lies.
+//! Placement of a compensation vertex.
 
 use crate::{CompensationOptions, LocalMean, Placement, TransmittanceUse, TruncatedExponential, Visibility};
 use fairflight_media::Extinction;
@@ -7,7 +7,7 @@ use fairflight_scene::{Geometry, Hit, Segment};
 use fairflight_sources::UniformSource;
 use fairflight_vpl::Gather;
 
-/// What lies around a point as far as bounding reaches.
+/// Surroundings of a point, as far as bounding reaches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Region {
     /// The point.
@@ -23,7 +23,7 @@ pub(crate) struct Region {
 /// A compensation vertex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<C> {
-    /// Where, seen from the point that it compensates.
+    /// The vertex, seen from the point that it compensates.
     pub(crate) vertex: Vertex,
     /// Transmittance · (σ_s or reflectance)/density: what L_s has to be multiplied with, without (G − b)/G.
     pub(crate) factor: C,

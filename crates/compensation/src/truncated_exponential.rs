@@ -22,7 +22,7 @@ pub struct TruncatedExponential {
 const UNIFORM_BELOW: f64 = 1e-280;
 
 impl TruncatedExponential {
-    /// Of `rate` ≥ 0 \[1/length\] within `length` > 0; one of them may make the product 0 or infinite, but not undefined.
+    /// The law of `rate` ≥ 0 \[1/length\] within `length` > 0; one of them may make the product 0 or infinite, but not undefined.
     #[inline]
     #[must_use]
     pub fn new(rate: f64, length: f64) -> Self {
