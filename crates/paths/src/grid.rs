@@ -109,7 +109,7 @@ impl Grid {
 }
 
 impl Grid {
-    /// Whether there is another cell in this direction. Beside the box the last cell goes on.
+    /// True if there is another cell in this direction. Beside the box the last cell goes on.
     #[inline]
     fn has_next(&self, cell: usize, axis: usize, slope: f64) -> bool {
         (slope > 0.0 && cell + 1 < self.cells[axis]) || (slope < 0.0 && cell > 0)

@@ -1,4 +1,4 @@
-//! Whether a walk has a second moment: the criticality of its squared energy.
+//! Existence of the second moment of a walk: the criticality of its squared energy.
 
 use crate::{SamplingExtinction, Walk};
 use fairflight_collision::CollisionModel;
@@ -54,7 +54,7 @@ const PARTICLES: usize = 512;
 const SETTLING: u32 = 20;
 const MEASURED: u32 = 30;
 
-/// Whether the bounds of the medium alone tell that the squared energy of a walk grows nowhere: 0 ≤ r ≤ 2/(1 + a) at every collision, so
+/// True if the bounds of the medium alone tell that the squared energy of a walk grows nowhere: 0 ≤ r ≤ 2/(1 + a) at every collision, so
 /// that q_sum = a r + |1 − r| ≤ 1, and no gain. Where they do not tell, it is for [`second_moment_growth`] to measure.
 pub fn grows_nowhere<M: Medium, P, C: Spectrum>(
     volume: &Volume<M, P, C>,

@@ -1,6 +1,6 @@
-//! How the weights of two sampling techniques follow from their densities.
+//! Weights of two sampling techniques from their densities.
 
-/// How the weights of two techniques follow from their intensities (veach-1995).
+/// Law of the weights of two techniques, from their intensities (veach-1995).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Heuristic {
     /// λ_i/Σ λ_j.

@@ -7,7 +7,7 @@ use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
 
-/// How particles walk: photons and importons alike.
+/// Random walk of particles: photons and importons alike.
 ///
 /// ```text
 /// while the particle is inside and has energy
@@ -36,7 +36,7 @@ pub struct Walk<R> {
 /// The energy, relative to where the particle started, below which roulette is played.
 pub const ROULETTE_BELOW: f64 = 1.0 / 256.0;
 
-/// How a walk ended.
+/// End of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End<C> {
     /// It left the medium.
@@ -55,7 +55,7 @@ pub enum End<C> {
 /// A particle that was just scattered, before its new direction is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatteringEvent<C> {
-    /// Where.
+    /// Point of the medium at which it was scattered.
     pub point: DVec3,
     /// The direction of travel before.
     pub incident: DVec3,
@@ -63,7 +63,7 @@ pub struct ScatteringEvent<C> {
     pub energy: C,
 }
 
-/// How a flight along one ray ended.
+/// End of a flight along one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Leg {
     /// It was scattered.

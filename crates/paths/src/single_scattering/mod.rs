@@ -44,7 +44,7 @@ pub struct SingleScattering<'s, M, P, C, W, T> {
     samples: u32,
     primary: W,
     shadow: T,
-    /// What scattering-driven sampling is fitted through, where the walk has no control.
+    /// Points that scattering-driven sampling is fitted through, where the walk has no control.
     explorers: SharedExplorers,
     fit: ScatteringDriven,
     /// Scores of interaction points, for resampling.

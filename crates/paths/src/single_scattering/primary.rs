@@ -32,7 +32,7 @@ pub trait Primary<M> {
 
 /// Explorers that neighbouring rays share.
 ///
-/// They are looked up on one ray and lent to those that follow. A control is free, so that this biases nothing; it is
+/// Looked up on one ray, explorers are lent to those that follow. A control is free, so that this biases nothing; it is
 /// independent of the interaction points of the ray that borrows.
 #[derive(Clone, Debug)]
 pub struct SharedExplorers {

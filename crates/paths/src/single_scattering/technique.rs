@@ -1,4 +1,4 @@
-//! Where scattering is evaluated along the camera ray, and how techniques are combined.
+//! Techniques that choose the points of the camera ray at which scattering is evaluated, and their combination.
 
 use crate::Heuristic;
 
@@ -18,7 +18,7 @@ pub enum Technique {
 pub enum Sampling {
     /// One technique.
     One(Technique),
-    /// Of all interaction points as many as there are samples are chosen in proportion to their scores without the shadow ray
+    /// As many interaction points as there are samples, chosen among all in proportion to their scores without the shadow ray
     /// (sampling importance resampling, talbot-2005).
     AttenuationResampled,
     /// Two techniques with MIS weights.
@@ -26,7 +26,7 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// Whether a technique takes part.
+    /// True if a technique takes part.
     #[must_use]
     pub fn uses(self, technique: Technique) -> bool {
         match self {

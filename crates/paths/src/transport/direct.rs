@@ -177,7 +177,7 @@ mod tests {
         assert!(lit(dvec3(0.0, 0.0, 6.0)) > 0.0);
     }
 
-    /// What both techniques find in one direction, each as its share of the whole emission.
+    /// Estimates of both techniques in one direction, each as its share of the whole emission.
     fn shares(
         scene: &Scene<EmptySpace>,
         vertex: &Vertex,

@@ -16,7 +16,7 @@ pub(crate) struct Scene<M> {
     pub(crate) lights: Lights<f64>,
 }
 
-/// Of the medium of [`hazy`].
+/// Albedo of the medium of [`hazy`].
 pub(crate) const ALBEDO: f64 = 0.5;
 
 /// The world of a scene.

@@ -11,7 +11,7 @@ use fairflight_sources::UniformSource;
 pub struct Traced<C> {
     /// Radiance along the ray, by this path.
     pub radiance: C,
-    /// Whether the path had more vertices or collisions than it was allowed: the rest is missing, a bias.
+    /// True if the path had more vertices or collisions than it was allowed: the rest is missing, a bias.
     pub is_cut: bool,
 }
 

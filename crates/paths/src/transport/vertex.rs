@@ -7,21 +7,21 @@ use std::f64::consts::FRAC_1_PI;
 
 /// A point of the medium or of a diffuse surface, seen from one direction.
 ///
-/// How much is scattered (albedo, reflectance) is not part of it: f of raab-2008 eq. 6 is [`eval`](Self::eval) times that.
+/// The share that is scattered (albedo, reflectance) is not part of it: f of raab-2008 eq. 6 is [`eval`](Self::eval) times that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// Where.
+    /// Place of the vertex.
     pub position: DVec3,
-    /// Whereto.
+    /// Distribution of the directions into which it scatters.
     pub lobe: Lobe,
 }
 
-/// How a vertex distributes what it scatters.
+/// Distribution of the directions into which a vertex scatters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
     /// Lambert, into the half space of the normal: 1/π per projected solid angle.
     Diffuse {
-        /// Of unit length, on the side from where the path came.
+        /// Normal of unit length, on the side from where the path came.
         normal: DVec3,
         /// The surface.
         surface: usize,
@@ -81,7 +81,7 @@ impl Vertex {
         self.eval(phase, direction) * self.cosine(direction)
     }
 
-    /// What leaves the vertex along `direction`, up to `length`.
+    /// The segment that leaves the vertex along `direction`, up to `length`.
     #[inline]
     #[must_use]
     pub fn leave(&self, direction: DVec3, length: f64) -> Segment {

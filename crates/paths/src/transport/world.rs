@@ -51,12 +51,12 @@ impl<
     }
 }
 
-/// Where a particle got to along a segment.
+/// End of a particle's flight along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<C> {
     /// It was scattered in the medium.
     Scattered {
-        /// Where.
+        /// The vertex at which it was scattered.
         vertex: Vertex,
         /// Its energy behind the collision, relative to that at the start; the expected energy per length is σ_s T.
         energy: C,
@@ -72,10 +72,10 @@ pub enum Event<C> {
     Truncated,
 }
 
-/// How light goes on behind a smooth surface.
+/// Continuation of a ray behind a smooth surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// Of travel.
+    /// Direction of travel, of unit length.
     pub direction: DVec3,
     /// Radiance in front of the surface for radiance behind it; 1 for power, and for mirrors.
     pub radiance_scale: f64,
@@ -162,15 +162,15 @@ impl<W: Types> World<'_, W> {
         Some((Vertex { position: hit.position, lobe }, reflectance))
     }
 
-    /// Whether a segment meets the medium at all.
+    /// True if a segment meets the medium.
     #[inline]
     pub fn meets_medium(&self, segment: &Segment) -> bool {
         let length = segment.length.is_finite().then_some(segment.length);
         self.volume.enter(&segment.line, length).is_some()
     }
 
-    /// How light goes on behind a smooth surface; `None` for a diffuse one. Reflection and refraction are chosen in proportion to
-    /// Fresnel's equations, so that either weighs 1.
+    /// Draws the continuation of a ray behind a smooth surface; `None` for a diffuse one. Reflection and refraction are chosen in
+    /// proportion to Fresnel's equations, so that either weighs 1.
     ///
     /// Radiance is compressed by refraction: L/n² is what stays the same along a ray.
     #[inline]
@@ -292,7 +292,7 @@ mod tests {
         assert!((found - (-6.0f64).exp()).abs() < 1e-17);
     }
 
-    /// What a ray does where it meets a square in the plane z = 0.
+    /// Continuation of a ray where it meets a square in the plane z = 0.
     fn pass(material: Material<f64>, origin: DVec3, direction: DVec3, u: &[f64]) -> Option<Passage> {
         let scene: Scene<EmptySpace> = vacuum(vec![square(0.0, 9.0, material, 0.0)], vec![]);
         let segment = ray(origin, direction);
