@@ -1,4 +1,4 @@
-//! Where light paths start.
+//! Emission of light paths.
 
 use fairflight_media::Line;
 use fairflight_scene::{Geometry, Lights, Segment, Spectrum, Surface, cosine_hemisphere};
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug)]
 pub struct Emitters<C> {
     list: Vec<Emitter<C>>,
-    /// Of the first 1, 2, … emitters, by the greatest channel.
+    /// Sums of the powers of the first 1, 2, … emitters, by the greatest channel.
     cumulative: Vec<f64>,
     ball: (DVec3, f64),
 }
@@ -29,7 +29,7 @@ enum Kind {
     Surface(usize, Sides),
 }
 
-/// Which sides of a surface send light to where it can be seen.
+/// Sides of a surface that send light to where it can be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sides {
     Both,
@@ -43,7 +43,7 @@ pub struct Start<C> {
     pub segment: Segment,
     /// The power of all emitters, if this is the only light path.
     pub power: C,
-    /// Whether a direction may meet the emitter by chance; not one of a point or of a direction.
+    /// True if a direction may meet the emitter by chance; false for a point or a direction.
     pub has_extent: bool,
 }
 

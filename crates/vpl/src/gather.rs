@@ -8,7 +8,7 @@ use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 use std::fmt;
 
-/// How much of the geometric term G a connection takes.
+/// Part of the geometric term G that a connection takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Term {
     /// min(G, b) \[1/length²\] (raab-2008 eq. 14); b = ∞ takes all of it.
@@ -18,7 +18,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// Of a geometric term.
+    /// The part of a geometric term \[1/length²\].
     #[inline]
     #[must_use]
     pub fn of(self, geometric: f64) -> f64 {
@@ -29,10 +29,10 @@ impl Term {
     }
 }
 
-/// Which virtual point lights a vertex is connected with.
+/// Virtual point lights that a vertex is connected with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Connected {
-    /// All of them.
+    /// All virtual point lights.
     All,
     /// One of them.
     One(usize),
@@ -51,13 +51,13 @@ pub enum Connected {
 ///
 /// A light exactly at the vertex adds nothing: a set of measure zero, in which no direction is defined.
 pub struct Gather<'s, W: Types> {
-    /// Where.
+    /// Scene that the virtual point lights lie in.
     pub world: World<'s, W>,
     /// The lights.
     pub vpls: &'s [Vpl<W::Spectrum>],
-    /// How much of G a connection takes.
+    /// The part of G that a connection takes.
     pub term: Term,
-    /// How emitters are sampled.
+    /// Combination of the techniques that sample emitters.
     pub heuristic: Heuristic,
     /// Flights through the medium.
     pub walk: Walk<W::Sampling>,
@@ -183,7 +183,7 @@ impl<W: Types> Gather<'_, W> {
     }
 }
 
-/// Of a path behind a smooth surface: only a scene without absorption has longer ones.
+/// Greatest number of vertices of a path behind a smooth surface: only a scene without absorption has longer ones.
 const MOST_VERTICES: u32 = 10_000;
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use fairflight_paths::transport::{Event, Types, Vertex};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 
-/// Which virtual point lights each point on the eye ray is connected with.
+/// Virtual point lights that each point on the eye ray is connected with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pairing {
     /// All.
@@ -19,7 +19,7 @@ pub enum Pairing {
 /// The part of the light that is rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Component {
-    /// All of it.
+    /// The whole light.
     #[default]
     All,
     /// Connections alone. With [`Term::Excess`](crate::Term::Excess) that is the energy that bounding takes away, seen by the
@@ -88,7 +88,7 @@ impl<'s, W: Types, K> VplIntegrator<'s, W, K> {
 }
 
 impl<W: Types, K: Correction<W>> VplIntegrator<'_, W, K> {
-    /// What is scattered at `y`, per albedo or reflectance, as the `j`-th of `of` points of a ray.
+    /// Light that is scattered at `y`, per albedo or reflectance, as the `j`-th of `of` points of a ray.
     fn shade(&mut self, y: &Vertex, (j, of): (u32, u32), source: &mut impl UniformSource) -> W::Spectrum {
         let Self { gather, correction, component, .. } = self;
         let count = gather.vpls.len();

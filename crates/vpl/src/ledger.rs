@@ -1,4 +1,4 @@
-//! Where the power of light paths went.
+//! Balance of the power of light paths.
 
 use fairflight_scene::Spectrum;
 
@@ -12,18 +12,18 @@ pub struct Ledger<C> {
     pub emitted: C,
     /// Power that left the scene.
     pub escaped: C,
-    /// What points and directions sent straight into smooth surfaces, behind which nobody else sees them.
+    /// Power that points and directions sent straight into smooth surfaces, behind which nobody else sees them.
     pub unseen: C,
-    /// What virtual point lights scatter, before any of them is dropped for being far.
+    /// Power that virtual point lights scatter, before any of them is dropped for being far.
     pub scattered: C,
-    /// What vertices absorbed, as far as it is scored there and not by chance: (1/ρ − 1) of what is scattered.
+    /// Power that vertices absorbed, as far as it is scored there and not by chance: (1/ρ − 1) of that scattered.
     pub absorbed: C,
     /// Paths that were cut at the greatest number of vertices: each is a bias.
     pub truncated: u64,
 }
 
 impl<C: Spectrum> Ledger<C> {
-    /// Of no paths.
+    /// The ledger of no paths.
     #[must_use]
     pub fn empty() -> Self {
         let zero = C::ZERO;
@@ -38,7 +38,7 @@ impl<C: Spectrum> Ledger<C> {
         }
     }
 
-    /// Of these and other paths.
+    /// The ledger of these and other paths.
     #[must_use]
     pub fn and(self, other: &Self) -> Self {
         Self {

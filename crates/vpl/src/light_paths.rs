@@ -132,7 +132,7 @@ impl<'s, W: Types> LightPaths<'s, W> {
     }
 }
 
-/// What was absorbed where `scattered` was not, per channel: (1 − a)/a of it.
+/// Power absorbed at a vertex that scattered `scattered`, per channel: (1 − a)/a of it.
 fn share_absorbed<C: Spectrum>(scattered: C, albedo: C) -> C {
     let ratio = albedo.map(|a| if a > 0.0 { (1.0 - a) / a } else { 0.0 });
     scattered * ratio
@@ -149,11 +149,11 @@ mod tests {
     use glam::{DVec3, dvec3};
     use std::f64::consts::LN_2;
 
-    /// Of the point light of each test; each path carries a quarter of it.
+    /// Power of the point light of each test; each path carries a quarter of it.
     const POWER: f64 = 8.0;
     const CARRIED: f64 = 2.0;
 
-    /// What one path of these variates, all of which it must use, leaves behind.
+    /// Lights and ledger of one path of these variates, all of which it must use.
     fn traced<M: LineThickness, C: Spectrum>(
         scene: &Scene<M, C>,
         change: impl FnOnce(Paths<'_, M, C>) -> Paths<'_, M, C>,

@@ -11,7 +11,7 @@ use glam::DVec3;
 /// vertex knows of its scattering function is its [`Lobe`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vpl<C> {
-    /// Where, and how it distributes.
+    /// Place and distribution of directions of the light.
     pub vertex: Vertex,
     /// The direction in which the light arrived, of unit length.
     pub incident: DVec3,
@@ -28,7 +28,7 @@ impl<C> Vpl<C> {
         self.vertex.eval(phase, direction)
     }
 
-    /// Whether it lies in the medium.
+    /// True if it lies in the medium.
     #[must_use]
     pub fn is_in_medium(&self) -> bool {
         matches!(self.vertex.lobe, Lobe::Phase { .. })
