@@ -32,12 +32,12 @@ const DEPTH: f64 = 1.0;
 /// A grid of more cells is not tried: pairs of nodes are what a solution costs.
 const MOST_CELLS: usize = 1200;
 
-/// What is known of an estimate.
+/// Law of one estimate, as far as it is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AdaptiveLaw {
     /// Var/T².
     pub(crate) variance: f64,
-    /// What the last halving of the cells changed in it.
+    /// Change of the variance by the last halving of the cells.
     pub(crate) error: f64,
     /// Expected look-ups.
     pub(crate) lookups: f64,
@@ -148,7 +148,7 @@ impl Node {
         [[of_variance * (ratio - 1.0) * (ratio - 1.0), of_variance * ratio * ratio], [of_lookups, of_lookups]]
     }
 
-    /// What later nodes add to ν and λ.
+    /// Contribution of later nodes to ν and λ.
     fn beyond(&self, later: &[Self]) -> [f64; 2] {
         later.iter().fold([0.0; 2], |[variance, lookups], other| {
             let [[jump, goes_on], [once, again]] = self.kernels(other);

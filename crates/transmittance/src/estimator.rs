@@ -14,7 +14,7 @@ pub trait TransmittanceEstimator<F: Extinction> {
     /// Draws one estimate \[1\]. Variates come from `source` alone; nothing is allocated.
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64;
 
-    /// Whether the estimator is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
+    /// True if the estimator is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
     /// does not admit gets a biased estimate, not an error: watch the look-ups.
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool;
 }
@@ -29,7 +29,7 @@ pub(crate) fn bounded<F: Majorant>(field: &F) -> Option<(f64, f64)> {
 /// A point at which a walk met matter, real or virtual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interaction {
-    /// Where \[length\].
+    /// Distance from the start of the profile \[length\].
     pub distance: f64,
     /// σ_t there \[1/length\].
     pub sigma_t: f64,

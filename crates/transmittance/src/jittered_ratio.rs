@@ -81,7 +81,7 @@ impl JitteredRatioInCells {
     }
 }
 
-/// How a cell is cut.
+/// Strata of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Strata {
     /// Their number; 0 where there is nothing to look up.

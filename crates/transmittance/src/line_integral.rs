@@ -28,7 +28,7 @@ pub struct LineIntegral {
     splits: u32,
 }
 
-/// How the first steps of the flights of a [`LineIntegral`] are chosen.
+/// Choice of the first steps of the flights of a [`LineIntegral`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Starts {
     /// Equidistant variates with one random shift, as algorithm 2 does.

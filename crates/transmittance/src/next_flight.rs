@@ -7,7 +7,7 @@ use fairflight_media::{Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use std::cell::Cell;
 
-/// What a walk does where it collides.
+/// Law of a walk at a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NextFlightVersion {
     /// Ends there with probability σ_t/μ, as delta tracking does: cheap in dense media, noisy.
@@ -60,7 +60,7 @@ impl NextFlight {
         Self { version }
     }
 
-    /// Which version it is.
+    /// The version of the estimator.
     #[must_use]
     pub fn version(&self) -> NextFlightVersion {
         self.version

@@ -5,7 +5,7 @@ use crate::{ClosedForm, ProductLaw, SignedProduct, Theory, TransmittanceEstimato
 use fairflight_media::{Extinction, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
-/// How the order is drawn and what an order scores. X is S σ_t at a point uniform on the profile, Y = t_c − X.
+/// Law of the order, and score of an order. X is S σ_t at a point uniform on the profile, Y = t_c − X.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PSeriesVersion {
     /// All orders up to the one at which the cumulative mass function of a Poisson law of mean t_c reaches 0.99, and one
@@ -103,7 +103,7 @@ impl PSeries {
         Self::new(version, field.majorant() * field.length())
     }
 
-    /// Which version it is.
+    /// The version of the estimator.
     #[must_use]
     pub fn version(&self) -> PSeriesVersion {
         self.version
@@ -133,7 +133,7 @@ fn surely_drawn(mean: f64) -> u32 {
     }
 }
 
-/// Whether an event of this probability happens. One that is sure costs no variate.
+/// Draws whether an event of this probability happens. One that is sure costs no variate.
 #[inline]
 fn happens(probability: f64, source: &mut impl UniformSource) -> bool {
     probability >= 1.0 || source.next_uniform() < probability

@@ -48,7 +48,7 @@ impl ProductLaw {
         if j2 > 1.0 { j2 + (-(-j2).exp()).ln_1p() } else { j2.exp_m1().ln() }
     }
 
-    /// What is known of an unbiased estimate with this law, where J_2 has an absolute `error` and as many `lookups` are
+    /// The theory of an unbiased estimate with this law, where J_2 has an absolute `error` and as many `lookups` are
     /// expected: d Var/Var = dJ_2 exp(J_2)/(exp(J_2) − 1).
     #[must_use]
     pub fn theory(&self, error: f64, lookups: f64) -> Theory {

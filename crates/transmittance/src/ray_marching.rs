@@ -5,7 +5,7 @@ use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adapti
 use fairflight_sources::UniformSource;
 use std::cell::Cell;
 
-/// Where in its step each look-up lies.
+/// Offset of each look-up in its step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Offset {
     /// In the middle: the midpoint rule, deterministic.

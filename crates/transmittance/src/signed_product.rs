@@ -90,8 +90,8 @@ impl SignedProduct {
         }
     }
 
-    /// Where the mantissa leaves its range. A factor near either end of double precision is first brought to its middle, so that the
-    /// product of the two can neither over- nor underflow: all but that product are shifts of the exponent.
+    /// Multiplies where the mantissa leaves its range. A factor near either end of double precision is first brought to its middle, so that
+    /// the product of the two can neither over- nor underflow: all but that product are shifts of the exponent.
     #[cold]
     fn multiply_far(&mut self, mut factor: f64) {
         if factor.abs() > LARGE && factor.is_finite() {
@@ -105,7 +105,7 @@ impl SignedProduct {
         self.rescale();
     }
 
-    /// Where the scales differ, or the sum leaves the range of a mantissa. A summand 2^1280 below the other is far below its rounding.
+    /// Adds where the scales differ, or the sum leaves the range of a mantissa. A summand 2^1280 below the other is far below its rounding.
     #[cold]
     fn add_far(&mut self, other: &Self) {
         // A zero has no scale of its own.

@@ -1,4 +1,4 @@
-//! What is known of an estimator before a sample is drawn.
+//! The law of an estimator in closed form, before a sample is drawn.
 
 use crate::HIGHEST_MOMENT;
 use fairflight_media::{Breakpoints, Extinction, OpticalThickness, RayQuadrature, Tolerance};

@@ -16,7 +16,7 @@ use fairflight_transmittance::{
 };
 use glam::DVec3;
 
-/// Whether a variance must be known.
+/// Demand on the variance: known or open.
 #[derive(Clone, Copy, PartialEq)]
 enum Law {
     /// A closed form that must be a number.

@@ -28,7 +28,7 @@ fn check(profile: &dyn Breakpoints, exponent: f64) {
     assert!(off.abs() < 1e-12, "{off:e}");
 }
 
-/// Of any height above 1: for some of them the two rules of a panel agree on a wrong value.
+/// Tents of any height above 1: for some of them the two rules of a panel agree on a wrong value.
 #[test]
 fn tents_through_one() {
     for i in 1..=2000 {

@@ -1,4 +1,4 @@
-//! What earlier rays taught.
+//! Experience with earlier rays.
 
 use super::pilot::Pilot;
 
@@ -27,7 +27,7 @@ impl Experience {
         self.rays
     }
 
-    /// What is remembered.
+    /// The pilots that are remembered.
     pub(super) fn pilots(&self) -> &[Pilot] {
         &self.pilots[..MEMORY.min(self.rays as usize)]
     }

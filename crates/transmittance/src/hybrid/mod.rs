@@ -34,7 +34,7 @@ pub struct Hybrid {
     forecast: Forecast,
 }
 
-/// What a hybrid chose.
+/// Choice of a hybrid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Choice {
     /// Unbiased ray marching.
@@ -43,7 +43,7 @@ pub enum Choice {
     Jittered(JitteredRatio),
 }
 
-/// What is expected of an estimator before it is run.
+/// Variance and cost that are expected of an estimator before it is run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Var/T² \[1\].
@@ -58,16 +58,17 @@ impl Forecast {
     }
 }
 
-/// Where the second-order law of a comb ends: on the seed ray with P = 0.1 it is 4 % too high at k2 = 0.27, and 27 % too low at 0.9.
+/// Greatest variance at which the second-order law of a comb holds: on the seed ray with P = 0.1 it is 4 % too high at k2 = 0.27, and
+/// 27 % too low at 0.9.
 const MOST_VARIANCE: f64 = 0.3;
-/// What a comb may cost on one remembered ray over jittered ratio tracking: a forecast is uncertain by about so much.
+/// Greatest cost of a comb on one remembered ray relative to jittered ratio tracking: a forecast is uncertain by about so much.
 const MOST_LOSS: f64 = 1.25;
 /// A variance of a comb is known from one pilot to a factor of two: fewer than so many do not tell whether it fails.
 const LEAST_PILOTS: usize = 4;
 /// Variances below this are rounding, and not worth more look-ups.
 const ROUNDING: f64 = 1e-26;
 
-/// What is considered.
+/// Candidates of the choice.
 #[derive(Clone, Copy)]
 enum Candidate {
     /// One comb of 2^fineness times the rule's teeth over the whole ray.
@@ -86,7 +87,7 @@ impl Candidate {
         })
     }
 
-    /// Whether its combs are of the rule's size.
+    /// True if its combs are of the rule's size.
     fn is_least(self) -> bool {
         matches!(self, Self::Whole { fineness: 0, .. } | Self::Apart { fineness: 0 })
     }
@@ -136,7 +137,7 @@ impl Hybrid {
         best
     }
 
-    /// Whether a comb is forecast to cost hardly more than jittered ratio tracking on every ray remembered.
+    /// True if a comb is forecast to cost hardly more than jittered ratio tracking on every ray remembered.
     fn is_safe(
         &self,
         (candidate, jittered): (Candidate, Candidate),
@@ -193,13 +194,13 @@ impl Hybrid {
         Some(Self { choice: Choice::Marching(estimator), forecast })
     }
 
-    /// What it chose.
+    /// The choice for this ray.
     #[must_use]
     pub fn choice(&self) -> &Choice {
         &self.choice
     }
 
-    /// What is expected of it; infinite without experience.
+    /// Expected variance and cost; infinite without experience.
     #[must_use]
     pub fn forecast(&self) -> Forecast {
         self.forecast

@@ -16,7 +16,7 @@ const FINEST: usize = 1 << (FINENESSES - 1);
 /// Combs of the finest kind that a pilot draws.
 const COMBS: usize = 4;
 
-/// What a few combs and a few pairs of look-ups tell of a ray.
+/// Variances on a ray by a few combs and a few pairs of look-ups.
 ///
 /// Nothing of it is used for an estimate from the same variates: a choice that depends on what it chooses for is a bias.
 ///
