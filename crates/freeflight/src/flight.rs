@@ -3,7 +3,7 @@
 use fairflight_media::Extinction;
 use fairflight_sources::UniformSource;
 
-/// Where a flight ended.
+/// End of a flight.
 ///
 /// There is no third end: a flight is absorbed by matter only after it has met it, and what happens there is not the
 /// flight's business.
@@ -13,12 +13,12 @@ pub enum Flight {
     Collided {
         /// The distance from the start of the profile \[length\].
         distance: f64,
-        /// What the flight counts; of either sign, 1 for an unweighted sampler.
+        /// Weight that the flight counts with \[1\]; of either sign, 1 for an unweighted sampler.
         weight: f64,
     },
     /// At the end of the profile.
     Escaped {
-        /// What the flight counts; of either sign, 1 for an unweighted sampler.
+        /// Weight that the flight counts with \[1\]; of either sign, 1 for an unweighted sampler.
         weight: f64,
     },
 }
@@ -70,7 +70,7 @@ pub trait FreeFlight<F: Extinction> {
     /// Draws one flight from the start of the profile. Variates come from `source` alone; nothing is allocated.
     fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight;
 
-    /// Whether the sampler is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
+    /// True if the sampler is defined where σ_t has this value at the distance `s`. Whoever runs it on a field that it
     /// does not admit gets biased flights, not an error: watch the look-ups.
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool;
 }

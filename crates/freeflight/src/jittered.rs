@@ -51,7 +51,7 @@ impl JitteredFlight {
     }
 }
 
-/// Whether a Woodcock flight from `from` reaches `to`.
+/// Draws whether a Woodcock flight from `from` reaches `to`.
 #[inline]
 fn survives<F: Majorant>(field: &F, from: f64, to: f64, source: &mut impl UniformSource) -> bool {
     let majorant = field.majorant();

@@ -15,7 +15,7 @@
 /// of a bracket leave no number inside after finitely many, whatever the values: so also where the derivative is 0 (a
 /// stretch without extinction, where the step is infinite or 0/0) and where rounding makes the function waver.
 ///
-/// Where the function is 0 on a whole stretch the far end of the stretch is found: a flight does not end in empty space.
+/// For a function that is 0 on a whole stretch the far end of the stretch is found: a flight does not end in empty space.
 pub(crate) fn crossing(
     mut low: f64,
     mut high: f64,

@@ -1,4 +1,4 @@
-//! What is known of a sampler before a flight is drawn.
+//! The law of a sampler in closed form, before a flight is drawn.
 
 use crate::WeightLaw;
 use fairflight_media::{Extinction, Integral, RayQuadrature, Tolerance};
