@@ -16,17 +16,17 @@ pub struct NotFinite {
     pub batch: u64,
     /// The sample within its batch.
     pub sample: u64,
-    /// What came out.
+    /// The estimate.
     pub value: f64,
 }
 
-/// How many samples the batch `index` of a run of `samples` has: [`BATCH`], except for the last.
+/// Number of samples of the batch `index` of a run of `samples`: [`BATCH`], except for the last.
 #[must_use]
 pub fn batch_size(samples: u64, index: u64) -> u64 {
     samples.saturating_sub(index * BATCH).min(BATCH)
 }
 
-/// How many batches a run of `samples` has.
+/// Number of batches of a run of `samples`.
 #[must_use]
 pub fn batch_count(samples: u64) -> u64 {
     samples.div_ceil(BATCH)

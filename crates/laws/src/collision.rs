@@ -8,7 +8,7 @@ use fairflight_sources::Scripted;
 pub const RATIOS: [f64; 16] =
     [-1e3, -2.0, -0.5, -1e-9, 0.0, 1e-9, 0.25, 0.5, 1.0 - 1e-8, 1.0, 1.0 + 1e-8, 1.05, 1.5, 2.0, 7.0, 1e3];
 
-/// How a model breaks its law.
+/// Violation of the law of a collision model.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Broken {
     /// E\[energy\] of a branch is not what eq. 8 asks for.
@@ -16,11 +16,11 @@ pub enum Broken {
     Mean {
         /// The ratio.
         r: f64,
-        /// Which of the two particles.
+        /// The name of the particle, scattered or transmitted.
         branch: &'static str,
-        /// What it has.
+        /// The expected energy that it has.
         found: f64,
-        /// What it should have.
+        /// The expected energy that it should have.
         expected: f64,
     },
     /// A probability outside \[0, 1\].
@@ -28,9 +28,9 @@ pub enum Broken {
     Probability {
         /// The ratio.
         r: f64,
-        /// Which of the two particles.
+        /// The name of the particle, scattered or transmitted.
         branch: &'static str,
-        /// What it has.
+        /// The probability that it has.
         found: f64,
     },
     /// Drawn weights, or their squares, are not those of the stated branch.
@@ -38,14 +38,14 @@ pub enum Broken {
     Draw {
         /// The ratio.
         r: f64,
-        /// What is drawn.
+        /// The mean of the drawn weights, or of their squares.
         found: f64,
-        /// What is stated.
+        /// The mean of the stated branch.
         expected: f64,
     },
 }
 
-/// What rounding of a threshold, and of the sum over its two sides, leaves of a mean, per unit of 1 + |energy|.
+/// Rounding of a mean by that of a threshold and of the sum over its two sides, per unit of 1 + |energy|.
 const THRESHOLD: f64 = 1e-12;
 
 /// Checks szirmay-kalos-2017 eq. 8, E\[scattered\] = a r and E\[transmitted\] = 1 − r, at every one of `ratios` that the

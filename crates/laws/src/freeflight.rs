@@ -28,24 +28,24 @@ pub const TEST_FUNCTIONS: [(&str, TestFunction); 4] = [
     ("wave", |x| 0.5 + 0.5 * (7.0 * x).cos()),
 ];
 
-/// Those of them that are 0 or 1.
+/// Test functions that are 0 or 1.
 const INDICATORS: [&str; 2] = ["collided", "second half"];
 
 /// Distances that are compared with their distribution: more say little more, and each is kept.
 const MOST_DISTANCES: usize = 1 << 18;
 
-/// What is known of the weights of a sampler.
+/// Known facts about the weights of a sampler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weights {
     /// All are 1: distances have the density σ_t T.
     One,
-    /// They lie between 0 and this number.
+    /// All lie between 0 and this number.
     UpTo(u32),
-    /// They vary.
+    /// Nothing is known: they vary.
     Any,
 }
 
-/// What the flights of one sampler on one profile should be like.
+/// Expectations about the flights of one sampler on one profile.
 #[derive(Clone, Debug)]
 pub struct FlightExpectation {
     length: f64,
@@ -104,7 +104,7 @@ impl FlightExpectation {
         self.lookups.filter(|reference| reference.mean > 0.0)
     }
 
-    /// How many tests share the false alarm.
+    /// Number of tests that share the false alarm.
     fn tests(&self) -> usize {
         TEST_FUNCTIONS.len() + 1 + usize::from(self.counts().is_some()) + usize::from(self.tests_distances())
     }

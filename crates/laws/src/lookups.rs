@@ -3,7 +3,7 @@
 use fairflight_freeflight::HIGHEST_MOMENT;
 use fairflight_stats::{ClosedMoments, Reference};
 
-/// What is known of the number of look-ups of one estimate.
+/// Law of the number of look-ups of one estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LookupLaw {
     /// A Poisson variate: every particle survives every collision, and collisions are a Poisson process.
@@ -21,7 +21,7 @@ pub enum LookupLaw {
 /// Relative error granted to an expected number of look-ups, which is an integral by quadrature.
 const QUADRATURE: f64 = 1e-8;
 
-/// What the look-ups of one estimate are judged against; `None` where nothing is known of them.
+/// The reference that the look-ups of one estimate are judged against; `None` where nothing is known of them.
 #[must_use]
 pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
     let moments = match law {

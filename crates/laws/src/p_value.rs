@@ -3,7 +3,7 @@
 use fairflight_stats::normal::two_sided_tail;
 use fairflight_stats::{GoodnessOfFit, MeanTest, StandardErrorSource, Verdict};
 
-/// How P(p ≤ x) relates to x where the law holds.
+/// Relation of P(p ≤ x) to x where the law holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// Equal, up to the normal approximation: a z-score with the standard error of the law.
@@ -44,7 +44,7 @@ impl PValue {
         Self { of: of.into(), p, level }
     }
 
-    /// Of the mean and of the variance, where they were tested; the mean is called `name`.
+    /// The p-values of the mean and of the variance, where they were tested; the mean is called `name`.
     #[must_use]
     pub fn of_verdict(verdict: &Verdict, name: &str) -> Vec<Self> {
         let level = match verdict.standard_error_source {
@@ -61,7 +61,7 @@ impl PValue {
         mean.into_iter().chain(variance).collect()
     }
 
-    /// Of a whole distribution, where it was tested.
+    /// The p-value of a whole distribution, where it was tested.
     #[must_use]
     pub fn of_fit(fit: &GoodnessOfFit, name: &str) -> Option<Self> {
         fit.p_value_bound.map(|p| Self::new(name, p, Level::Conservative))

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// Cells of the cosine, about equally probable, and of the azimuth.
 const CELLS: u32 = 20;
 
-/// What quadrature to 1e-12 and the rounding of a cosine may leave of a probability. A peak whose density is P per unit of
+/// Greatest error of a probability by quadrature to 1e-12 and by the rounding of a cosine. A peak whose density is P per unit of
 /// cosine turns a rounding of 1e-16 into 1e-16 P: peaks up to 1e5 are told from mistakes.
 const TOLERANCE: f64 = 1e-10;
 
@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-10;
 const INCIDENT: [DVec3; 4] =
     [DVec3::Z, DVec3::NEG_Z, dvec3(2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0), dvec3(-0.36, 0.48, -0.8)];
 
-/// How a phase function breaks its law, told without sampling.
+/// Violation of the law of a phase function, told without sampling.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Broken {
     /// The integral over the sphere is not 1, or eval is negative or no number.
@@ -30,7 +30,7 @@ pub enum Broken {
     /// The stated mean cosine is not the integral.
     #[error("the mean cosine is stated as {found} and integrates to {expected}")]
     MeanCosine {
-        /// What is stated.
+        /// The stated mean cosine.
         found: f64,
         /// The integral.
         expected: f64,
@@ -79,7 +79,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Whether both laws hold; `None` if none is broken and one is not testable.
+    /// True if both laws hold; `None` if none is broken and one is not testable.
     #[must_use]
     pub fn holds(&self) -> Option<bool> {
         match (self.cosine.sound, self.azimuth.sound) {

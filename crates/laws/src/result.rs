@@ -3,20 +3,20 @@
 use crate::{Evidence, PValue, Refusal};
 use fairflight_stats::{MeanTest, Verdict};
 
-/// What a check found.
+/// Result of a check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckResult {
-    /// Whether the law holds; `None`: not testable at this N.
+    /// True if the law holds; `None`: not testable at this N.
     pub holds: Option<bool>,
     /// Samples drawn; 0 for exact algebra.
     pub samples: u64,
     /// The z-score of the mean, where there is one; evidence only if the reason says so.
     pub mean_z: Option<f64>,
-    /// That of the variance.
+    /// The z-score of the variance.
     pub variance_z: Option<f64>,
-    /// Whether the variance was tested against its closed form, and not only compared with it.
+    /// True if the variance was tested against its closed form, and not only compared with it.
     pub variance_is_tested: bool,
-    /// That of the number of look-ups.
+    /// The z-score of the number of look-ups.
     pub lookups_z: Option<f64>,
     /// The smallest relative bias of the mean that the run would have detected with probability 0.99.
     pub detectable_relative_bias: Option<f64>,
@@ -108,7 +108,7 @@ impl CheckResult {
     }
 }
 
-/// What of `samples` a normal approximation asks for; `None` for a test that needs none.
+/// Samples that a normal approximation asks for, as a share of `samples`; `None` for a test that needs none.
 pub(crate) fn normal_share(verdict: &Verdict, samples: u64) -> Option<f64> {
     let asks = matches!(verdict.mean_test, MeanTest::Normal | MeanTest::NotTestable);
     asks.then(|| verdict.normal_samples / samples as f64)

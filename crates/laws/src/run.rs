@@ -1,11 +1,11 @@
-//! How a statistical check is run.
+//! Samples, seed and false alarm of a statistical check.
 
 use fairflight_stats::{Reference, samples_needed};
 
-/// What a statistical check is given: everything that its numbers depend on.
+/// Input of a statistical check: everything that its numbers depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
-    /// How many samples to draw.
+    /// Number of samples to draw.
     pub samples: u64,
     /// The seed of the check: two checks of one run must not share it ([`fairflight_sources::derive_seed`]).
     pub seed: u64,

@@ -1,4 +1,4 @@
-//! Which values one estimate can take: what an exact test of its mean needs.
+//! Values that one estimate can take: the knowledge that an exact test of its mean needs.
 //!
 //! A walk's estimate is T_main times a product of weights. Where every weight is at most 1 in magnitude the estimate is
 //! bounded by T_main; where the weights are 0 or 1 it has two values, and the number of survivors is binomial. Both
@@ -100,14 +100,14 @@ pub fn ratio_range(sigma_t: Interval, control: Interval, sampling: Interval) -> 
     is_bounded.then_some(hull)
 }
 
-/// What the weights of a collision model can be when r stays in an interval.
+/// Range of the weights of a collision model while r stays in an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// All weights, the 0 of a lost particle left out.
     pub energies: Interval,
-    /// Whether every surviving particle keeps its weight exactly (or becomes 0).
+    /// True if every surviving particle keeps its weight exactly (or becomes 0).
     pub unchanged: bool,
-    /// Whether every particle survives: the number of look-ups of a walk is then a Poisson variate.
+    /// True if every particle survives: the number of look-ups of a walk is then a Poisson variate.
     pub survives: bool,
 }
 

@@ -10,7 +10,7 @@ use fairflight_stats::reference::ROUNDING;
 use fairflight_stats::{ClosedMoments, Moments, Reference, Scores, Verdict, judge};
 use fairflight_transmittance::{Theory, TransmittanceEstimator};
 
-/// What the estimates of one profile should be like.
+/// Expectations about the estimates of one profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expectation {
     /// The optical thickness.
@@ -19,7 +19,7 @@ pub struct Expectation {
     pub theory: Theory,
     /// The values that one estimate can take, in [`Unit::of`] the optical thickness.
     pub scores: Scores,
-    /// What is known of the look-ups of one estimate.
+    /// Law of the look-ups of one estimate.
     pub lookups: LookupLaw,
 }
 
@@ -30,7 +30,7 @@ impl Expectation {
         Unit::of(self.truth.optical_thickness)
     }
 
-    /// What the estimates are judged against, in [`Self::unit`].
+    /// The reference that estimates are judged against, in [`Self::unit`].
     ///
     /// The error of the mean is that of τ, and its rounding: ε of τ is ε τ of exp(−τ), which shows in no logarithm of a
     /// mean of 1. Where T is out of the range of numbers nothing is known but the mean.
@@ -47,7 +47,7 @@ impl Expectation {
         Reference { error, moments, variance_bound, scores: *scores, ..Reference::exact(mean) }
     }
 
-    /// What the look-ups are judged against; `None` where nothing is known of them.
+    /// The reference that the look-ups are judged against; `None` where nothing is known of them.
     #[must_use]
     pub fn lookups_reference(&self) -> Option<Reference> {
         lookups::reference(self.theory.lookups, self.lookups)
@@ -80,7 +80,7 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Whether all laws hold; `None` if none is broken and one is not testable.
+    /// True if all laws hold; `None` if none is broken and one is not testable.
     #[must_use]
     pub fn holds(&self) -> Option<bool> {
         let lookups = self.lookups_verdict.as_ref().map_or(Some(true), |verdict| verdict.sound);

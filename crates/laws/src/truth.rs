@@ -50,7 +50,7 @@ impl Unit {
         Self { ln }
     }
 
-    /// What an estimate is multiplied with.
+    /// Factor of an estimate.
     #[must_use]
     pub fn scale(self) -> f64 {
         (-self.ln).exp()

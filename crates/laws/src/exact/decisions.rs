@@ -2,7 +2,7 @@
 
 use fairflight_sources::LARGEST_VARIATE;
 
-/// Where a function of a variate is tried first: steps that are closer together than 1/PROBES may be missed.
+/// Number of variates at which a function is tried first: steps that are closer together than 1/PROBES may be missed.
 const PROBES: u32 = 256;
 
 /// E\[f(u)\] over one uniform variate, for an f that is constant in pieces: a decision, and what it leads to.

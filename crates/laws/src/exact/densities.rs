@@ -6,7 +6,7 @@ use glam::DVec3;
 /// Step of the differences: their error is that of rounding, 1e-16/STEP, and STEP⁴ times a fifth derivative.
 const STEP: f64 = 2e-4;
 
-/// What differences leave of a relative density, for maps that vary by less than a hundred times over a tenth of their range.
+/// Relative error of a density by differences, for maps that vary by less than a hundred times over a tenth of their range.
 pub const GRANTED: f64 = 1e-7;
 
 /// The points in each direction at which a map is tried.

@@ -8,10 +8,10 @@ use fairflight_transmittance::{Roulette, TransmittanceEstimator, UnbiasedRayMarc
 /// The highest order that is averaged.
 const MOST: u32 = 12;
 
-/// What orders beyond leave of the mean: for deviations of at most 1, 1/13!.
+/// Error of the mean without higher orders: for deviations of at most 1, 1/13!.
 pub const MEAN_GRANTED: f64 = 1e-9;
 
-/// The same of the variance, relative to it: higher orders have the probability 2^12/13! < 1e-6, and weights below 1e-2.
+/// Error of the variance without them, relative to it: higher orders have the probability 2^12/13! < 1e-6, and weights below 1e-2.
 pub const VARIANCE_GRANTED: f64 = 1e-6;
 
 /// E\[estimate/T\] and Var\[estimate/T\] of an estimate with one segment and one tooth of equal weight, on a field of two cells of equal

@@ -2,7 +2,7 @@
 
 use fairflight_media::{Breakpoints, Majorant, OpticalThickness};
 
-/// What Runge and Kutta's rule leaves of a variance that is not small against 1.
+/// Error of Runge and Kutta's rule for a variance that is not small against 1.
 pub const GRANTED: f64 = 1e-8;
 
 /// Steps on each smooth stretch.

@@ -5,7 +5,7 @@ use fairflight_freeflight::FreeFlight;
 use fairflight_media::{Breakpoints, Majorant, OpticalThickness, Tolerance, adaptive_integral};
 use fairflight_sources::Scripted;
 
-/// What quadrature to 1e-13 and the rounding of both sides leave, relative to 1 + the greatest thickness.
+/// Error of quadrature to 1e-13 and of the rounding of both sides, relative to 1 + the greatest thickness.
 pub const GRANTED: f64 = 1e-11;
 
 /// Fractions of the length between which the integral is taken: whole, halves, within a cell, across many.

@@ -1,4 +1,4 @@
-//! What came out of a run of flights, and its one line in a table.
+//! Result of a run of flights, and its one line in a table.
 
 use super::FlightRefusal;
 use crate::result::{greater, normal_share};
@@ -24,7 +24,7 @@ pub struct FlightEvidence {
 }
 
 impl FlightEvidence {
-    /// Whether all laws hold; `None` if none is broken and one is not testable.
+    /// True if all laws hold; `None` if none is broken and one is not testable.
     #[must_use]
     pub fn holds(&self) -> Option<bool> {
         let verdicts = self.findings().map(|(_, sound, _)| sound);
