@@ -13,7 +13,7 @@ use fairflight_transmittance::{Experience, Hybrid, Pilot};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Of a quick run: the law of the variance is that of what was chosen, of which only two moments may be known.
+/// Samples of a quick run: the law of the variance is that of the chosen estimator, of which only two moments may be known.
 const SAMPLES: u64 = 80_000;
 /// Pilots that teach.
 const PILOTS: u64 = 12;

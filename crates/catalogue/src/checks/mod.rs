@@ -39,7 +39,7 @@ pub fn check_level() -> f64 {
     sidak_level(FAMILY_LEVEL, FAMILY_SIZE)
 }
 
-/// Which law a check is about.
+/// Law that a check is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
     /// E\[estimate\] = exp(−τ), the variance of eq. 16 to 20 where that can be tested, and the expected look-ups.
@@ -62,7 +62,7 @@ pub enum Law {
     Compensation,
     /// The power of light paths is absorbed or escapes.
     Energy,
-    /// What no estimate exceeds, and limits in which estimators coincide, by exact comparison.
+    /// No estimate exceeds its bound, and estimators coincide in their limits, by exact comparison.
     Bound,
     /// The squared energy of walks grows as their collisions say, by exact algebra.
     Growth,
@@ -98,10 +98,10 @@ impl Law {
     }
 }
 
-/// How many times as many samples a full run draws as a quick one.
+/// Factor of the samples of a full run over those of a quick one.
 const FULL: u64 = 5;
 
-/// How thorough a run is.
+/// Thoroughness of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// Seconds for all checks: enough for every law to be testable.

@@ -1,5 +1,5 @@
-//! What has no variance, or a bias of its own: the closed form of each medium against quadrature, and a majorant that is still
-//! found.
+//! Estimators without variance, or with a bias of their own: the closed form of each medium against quadrature, and a majorant that is
+//! still found.
 
 use super::estimators::add;
 use super::media::{LAWFUL, analytic_cosine, voxels};

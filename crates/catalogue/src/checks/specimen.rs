@@ -16,7 +16,7 @@ use fairflight_transmittance::{
 };
 use std::sync::OnceLock;
 
-/// What a profile must know to be a specimen; a bound may be infinite.
+/// Knowledge that a profile must have to be a specimen; a bound may be infinite.
 pub(super) trait SpecimenField:
     Extinction + Breakpoints + Majorant + Minorant + Clone + Send + Sync + 'static
 {

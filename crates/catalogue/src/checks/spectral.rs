@@ -100,7 +100,7 @@ where
         ]
     }
 
-    /// Those whose weights are bounded by N; the average scheme at `loose` times the majorant.
+    /// Checks of the samplers whose weights are bounded by N; the average scheme at `loose` times the majorant.
     fn within_bounds(&self, loose: f64) -> [Check; 3] {
         let bound = Weights::UpTo(N as u32);
         let majorants = self.majorants.map(|majorant| self.constant(majorant));

@@ -16,10 +16,10 @@ const ANISOTROPIES: [(&str, f64, f64); 4] = [
 /// Relative, for a mean cosine that is not 0.
 const TOLERANCE: f64 = 1e-12;
 
-/// Whether every cosine solves the distribution to the rounding of the cosine and of the distribution itself.
+/// Checks that every cosine solves the distribution to the rounding of the cosine and of the distribution itself.
 ///
 /// # Errors
-/// The first that does not.
+/// If a cosine does not; the first is named.
 fn inverts(phase: &impl PhaseFunction, distribution: impl Fn(f64) -> f64) -> Result<(), String> {
     for i in 0..1000 {
         let u = f64::from(i) / 1000.0;

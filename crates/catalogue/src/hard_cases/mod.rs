@@ -24,16 +24,16 @@ pub use by_kind::{ROWS, SAMPLERS, spared};
 use crate::function::{Function, joined};
 use fairflight_laws::{CheckResult, Run};
 
-/// What came of a case.
+/// Outcome of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// Our answer, or the text of the refusal.
     pub ours: String,
-    /// Whether it is as it should be.
+    /// True if the answer is as it should be.
     pub passes: bool,
-    /// Whether it is a refusal.
+    /// True if the answer is a refusal.
     pub refused: bool,
-    /// What a judged run found: samples, scores, p-values and power. None for a case that is evaluated exactly.
+    /// Result of a judged run: samples, scores, p-values and power. None for a case that is evaluated exactly.
     pub evidence: CheckResult,
 }
 
@@ -79,15 +79,15 @@ fn number(value: f64) -> String {
 pub struct HardCase {
     /// The number of its row in the list.
     pub number: u32,
-    /// What is hard, with the value; unique together with the number.
+    /// Difficulty of the case, with the value; unique together with the number.
     pub title: String,
-    /// Which of ours is tried.
+    /// Estimator of ours that is tried.
     pub estimator: &'static str,
     /// The kinds of estimator, free-flight sampler and integrator that it draws from, by their names.
     pub kinds: Vec<&'static str>,
     /// The exact answer and how it is known.
     pub exact: String,
-    /// How near is right.
+    /// Deviation from the exact answer that is granted.
     pub tolerance: &'static str,
     /// True if it is made from the table of kinds, and has no set-up of its own.
     pub of_table: bool,

@@ -28,7 +28,7 @@ impl Majorant for Faulty {
     }
 }
 
-/// What is expected does not matter: nothing is judged before every look-up was lawful.
+/// An arbitrary expectation: nothing is judged before every look-up was lawful.
 fn expectation() -> Expectation {
     let truth = Truth { optical_thickness: 1.0, error: 0.0 };
     let theory = Theory::mean_only(1.0);

@@ -17,7 +17,7 @@ pub struct Slab {
     pub legendre: Vec<f64>,
 }
 
-/// How a slab is lit, from one side.
+/// Light on one side of a slab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lit {
     /// Radiance 1 from the whole half space; seen along the normal.

@@ -55,7 +55,7 @@ impl<F: Extinction> FreeFlight<F> for CollidesAsPrinted {
 struct WithoutEnergy {
     model: SingleParticle,
     sampling: Constant,
-    /// What a scattered and a transmitted energy are taken for.
+    /// Replacements of a scattered and of a transmitted energy.
     taken_for: [fn(f64) -> f64; 2],
 }
 

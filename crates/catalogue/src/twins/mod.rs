@@ -27,14 +27,14 @@ use fairflight_laws::Run;
 use fairflight_laws::freeflight::{FlightEvidence, FlightRefusal};
 use fairflight_stats::Verdict;
 
-/// What a check said of a twin.
+/// Result of a check on a twin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rejection {
-    /// Whether it was rejected, as it should be.
+    /// True if the twin was rejected, as it should be.
     pub rejected: bool,
     /// The z-score of its mean, where it has one.
     pub mean_z: Option<f64>,
-    /// That of its variance.
+    /// The z-score of its variance, where it has one.
     pub variance_z: Option<f64>,
     /// Why, in words.
     pub reason: String,
@@ -69,7 +69,7 @@ impl Rejection {
     }
 }
 
-/// How a twin is found out.
+/// Evidence by which a twin is rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evident {
     /// By a wrong mean: the |z| expected at the stated N.
@@ -97,11 +97,11 @@ pub struct Twin {
     pub kinds: Vec<&'static str>,
     /// The wrong line, and who wrote it.
     pub mistake: &'static str,
-    /// Where it is tried.
+    /// The profile, or the scene, on which it is tried.
     pub profile: &'static str,
     /// N; 0 for an exact assertion.
     pub samples: u64,
-    /// How it is found out.
+    /// Evidence by which it is rejected.
     pub evident: Evident,
     function: Function<Rejection>,
 }

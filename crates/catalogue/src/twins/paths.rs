@@ -96,7 +96,7 @@ impl Cube {
         }
     }
 
-    /// What estimates that lie between 0 and `most` are judged by.
+    /// Reference of estimates that lie between 0 and `most`.
     fn reference(&self, most: f64) -> Reference {
         let scores = Scores::Bounded { minimum: 0.0, maximum: most };
         Reference { scores, ..single_scattering::reference(&self.volume, &self.lights, &[self.line]) }

@@ -19,7 +19,7 @@ use fairflight_transmittance::Regular;
 use fairflight_vpl::{Connected, Term, Vpl};
 use glam::{DVec3, dvec3};
 
-/// What is wrong.
+/// Mistake of a twin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mistake {
     #[cfg(test)]
@@ -28,7 +28,7 @@ enum Mistake {
     DividedByLights,
     /// Only virtual point lights shine on a compensation vertex.
     NoPrimaryLight,
-    /// Those count without a bound there.
+    /// Virtual point lights count without a bound at a compensation vertex.
     UnboundedBehind,
     /// exp(−σs) for (e^{−σs} − e^{−σR})/(1 − e^{−σR}).
     SurfaceByFlight,
@@ -152,7 +152,7 @@ fn beside() -> Local {
     scene
 }
 
-/// What their tails ask for.
+/// Samples that the tails of the twins ask for.
 const SAMPLES: u64 = 400_000;
 const MORE: u64 = 900_000;
 

@@ -1,4 +1,4 @@
-//! What one estimate is at most, and limits in which estimators coincide, draw by draw.
+//! Upper bounds of one estimate, and limits in which estimators coincide, draw by draw.
 
 use super::rooms::{Replica, Room};
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};

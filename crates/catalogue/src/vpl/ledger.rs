@@ -1,4 +1,4 @@
-//! Where the power of light paths goes.
+//! Balance of the power of light paths.
 
 use fairflight_laws::{NotFinite, Run, measure};
 use fairflight_paths::Walk;

@@ -43,7 +43,7 @@ pub struct Local {
 }
 
 impl Local {
-    /// What sees these lights by `walk` and `shadow`.
+    /// The gathering of these lights by `walk` and `shadow`.
     pub fn gather<R: SamplingExtinction, T: RayTransmittance<Homogeneous>>(
         &self,
         walk: Walk<R>,
@@ -103,7 +103,7 @@ impl Local {
         (power * scatters * scatters * self.bound, emitters.sum())
     }
 
-    /// What bounding takes away from all light at y that is scattered once more on the way.
+    /// Light at y that bounding takes away from all that is scattered once more on the way.
     fn compensation(&self, factor: u32) -> f64 {
         let (turns, cosines, radii) = (36 * factor, 48 * factor, 24 * factor);
         let middle = |i: u32, of: u32| (f64::from(i) + 0.5) / f64::from(of);

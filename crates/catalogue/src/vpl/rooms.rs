@@ -10,20 +10,20 @@ use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::{Reference, Verdict, judge};
 use fairflight_vpl::{Emitters, Gather, Ledger, LightPaths, Term, Vpl, VplIntegrator};
 
-/// What is looked at.
+/// A scene, and one ray that looks into it.
 #[derive(Clone, Debug)]
 pub struct Room<G, M, P> {
-    /// What scatters on the way.
+    /// The medium.
     pub volume: Volume<M, P, f64>,
-    /// What ends the way.
+    /// The surfaces.
     pub surfaces: G,
-    /// What shines, apart from surfaces.
+    /// The lights that are no surfaces.
     pub lights: Lights<f64>,
-    /// One ray.
+    /// The ray.
     pub eye: Line,
 }
 
-/// How it is looked at: one sample is one replica, a set of light paths and what it shows along some rays.
+/// Parameters of a replica: one sample is one replica, a set of light paths and the radiance that it shows along some rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Replica<R, T> {
     /// Light paths of a set.
@@ -34,7 +34,7 @@ pub struct Replica<R, T> {
     pub eye_samples: u32,
     /// b \[1/length²\].
     pub bound: f64,
-    /// Whether and how it is made up for.
+    /// Options of the compensation of the bound.
     pub options: CompensationOptions,
     /// Flights of light paths, eye rays and compensation.
     pub walk: Walk<R>,

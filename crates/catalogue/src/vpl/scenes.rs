@@ -10,10 +10,10 @@ use fairflight_scene::{
 };
 use glam::{DVec3, dvec3};
 
-/// Of walls that glow: reflectance and emission, so that the radiance is [`GLOW`].
+/// Reflectance of walls that glow, with an emission so that the radiance is [`GLOW`].
 const REFLECTANCE: f64 = 0.3;
 const EMISSION: f64 = 1.0;
-/// Wherever one looks.
+/// Radiance of a room whose walls glow, in every direction.
 pub(crate) const GLOW: f64 = EMISSION / (1.0 - REFLECTANCE);
 
 pub(crate) fn phase() -> HenyeyGreenstein {

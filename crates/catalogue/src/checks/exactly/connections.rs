@@ -92,7 +92,7 @@ impl Plates {
         Vertex { position: z * DVec3::Z, lobe: Lobe::Diffuse { normal, surface } }
     }
 
-    /// What compensation finds at the middle of a plate for these variates, at half of the bound that is reached straight across.
+    /// Light that compensation recovers at the middle of a plate for these variates, at half of the bound that is reached straight across.
     fn recovered(&self, surface: usize, steps: Option<u32>, variates: &[f64]) -> f64 {
         let vertex = Vertex { position: dvec3(0.1, 0.05, 0.2), lobe: Lobe::Phase { incident: DVec3::X } };
         let vpls = [Vpl { vertex, incident: DVec3::X, power: 3.0, bounce: 1 }];

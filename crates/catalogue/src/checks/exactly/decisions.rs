@@ -69,7 +69,7 @@ fn outcomes<M: SingleOutcome>(name: &str, of: impl Fn(Albedo) -> M + Send + Sync
     })
 }
 
-/// Where the only tentative collision of a walk of length 1 is.
+/// Distance of the only tentative collision of a walk of length 1.
 const COLLISION: f64 = 0.4;
 
 /// A walk with one tentative collision: what `walk` makes of it, averaged over the variate of its decision, against what it should

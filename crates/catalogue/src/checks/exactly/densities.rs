@@ -1,4 +1,4 @@
-//! What is drawn from two variates has the density that is told.
+//! Checks of maps from two variates: each draw has the density that is stated.
 
 use super::{Check, LAWFUL, check};
 use fairflight_laws::CheckResult;

@@ -36,7 +36,7 @@ fn radiance(
     Check::new(id, Law::Radiance, estimator, medium, samples, move |run| result(&verdict(run), run))
 }
 
-/// What was refused does not hold.
+/// Result of a verdict; a refusal counts as a law that does not hold.
 pub(super) fn result(verdict: &Result<Verdict, NotFinite>, run: Run) -> CheckResult {
     match verdict {
         Ok(verdict) => CheckResult::of_verdict(verdict, run.samples),

@@ -24,7 +24,7 @@ struct Scene<M, P> {
     samples: u64,
 }
 
-/// All of single scattering.
+/// All checks of single scattering.
 pub(super) fn checks() -> Vec<Check> {
     use Technique::{Attenuation, Scattering, Source};
     let ratio = |sigma_samp| Ratio(Uniform::new(sigma_samp).expect(LAWFUL));

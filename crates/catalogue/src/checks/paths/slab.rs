@@ -20,7 +20,7 @@ const SAMPLES: u64 = 200_000;
 const MORE: u64 = 500_000;
 const MOST: u64 = 1_000_000;
 
-/// What is looked at.
+/// A slab, its light, and the side from which it is seen.
 #[derive(Clone, Copy)]
 struct View {
     optical_thickness: f64,
@@ -38,7 +38,7 @@ impl View {
         slab::line(self.lit, self.reflected, self.optical_thickness)
     }
 
-    /// What a walk at a rate of at least `lowest` can score in the extinction 1 of a slab. From 1 on no energy is negative, and none
+    /// Scores of a walk at a rate of at least `lowest` in the extinction 1 of a slab. From 1 on no energy is negative, and none
     /// exceeds that of before but by a gain: a walk that is lit or not, by a radiance of 1, scores between 0 and 1, and one of
     /// energy 1 has two values.
     fn scores(&self, version: Version, lowest: f64) -> Scores {

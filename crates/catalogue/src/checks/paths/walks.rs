@@ -1,4 +1,4 @@
-//! What bounds a walk: its greatest number of collisions, and the growth of its squared energy.
+//! Bounds of a walk: its greatest number of collisions, and the growth of its squared energy.
 
 use super::{Check, LAWFUL, radiance};
 use crate::checks::Law;

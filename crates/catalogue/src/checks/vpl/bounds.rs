@@ -1,4 +1,4 @@
-//! What compensation is at most, and limits that agree to the last bit.
+//! Upper bounds of compensation, and limits that agree to the last bit.
 
 use super::{Check, LAWFUL, Law, STRATEGIES};
 use crate::vpl::bounds::{coincide, compensation_at_most};

@@ -106,7 +106,8 @@ fn tried<T: RayTransmittance<Homogeneous>>(
     result(&scene.check(way, correction, reference, run), run)
 }
 
-/// What lies further away than the region cannot matter: local visibility gives the same numbers. The first estimate that differs.
+/// The first estimate that differs under local visibility; `None` as long as surfaces further away than the region do not matter, and it
+/// gives the same numbers.
 fn local_visibility_differs(
     scene: &Local,
     walk: Walk<Uniform>,

@@ -65,7 +65,7 @@ impl Profile {
         self.majorant() * self.length()
     }
 
-    /// That of the majorants of its cells.
+    /// The optical thickness of the majorants of its cells \[1\].
     pub(super) fn depth_in_cells(&self) -> f64 {
         self.rates(1.0).optical_thickness(0.0, self.length())
     }

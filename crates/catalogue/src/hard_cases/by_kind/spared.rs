@@ -46,15 +46,15 @@ pub const SAMPLERS: [&str; 11] = [
 
 /// Kinds of one sort.
 enum Kinds {
-    /// Whatever draws along a line: estimators of transmittance and samplers of free flights.
+    /// Kinds that draw along a line: estimators of transmittance and samplers of free flights.
     OfLines,
-    /// Those of one wavelength.
+    /// Kinds of one wavelength.
     Gray,
     /// Estimators of transmittance but this one.
     EstimatorsBut(&'static str),
-    /// Those of a whole scene.
+    /// Kinds for a whole scene.
     Integrators,
-    /// Those named.
+    /// Kinds with these names.
     These(&'static [&'static str]),
 }
 
