@@ -1,5 +1,5 @@
-//! What `harness verify --json` found on many seeds: alarms, checks that could not be tested, power, and the share of p-values
-//! below 0.01. Reads the files that it is given; `tests/verify-seeds` makes them.
+//! Statistics of the results of `harness verify --json` on many seeds: alarms, checks that could not be tested, power, and the share of
+//! p-values below 0.01. Reads the files that it is given; `tests/verify-seeds` makes them.
 //!
 //! ```sh
 //! cargo run -p fairflight-tests --example verify_seeds -- verify-*.json

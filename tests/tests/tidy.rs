@@ -255,7 +255,7 @@ fn no_path_of_a_machine() {
     }
 }
 
-/// Whether `folder` or one above it, up to `root`, has results or tables that state their command.
+/// True if `folder` or one above it, up to `root`, has results or tables that state their command.
 fn states_its_command(folder: &Path, root: &Path) -> bool {
     let results = fs::read_to_string(folder.join("results.json")).unwrap_or_default();
     let json: serde_json::Value = serde_json::from_str(&results).unwrap_or_default();

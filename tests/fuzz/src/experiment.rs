@@ -9,7 +9,7 @@ use fairflight_harness::reference::Truth;
 use fairflight_harness::spec::{Experiment, Overrides, Request};
 use fairflight_media::Tolerance;
 
-/// Of a sweep, so many points are planned.
+/// Number of points of a sweep that are planned.
 const PLANNED: usize = 3;
 
 /// A spec is read or refused with its place; an estimator that was read is written and read back as itself; what can be planned is

@@ -3,7 +3,7 @@
 use fairflight_media::{ExpressionFieldError, ExpressionMedium, ExpressionProfile, Extinction, Medium};
 use glam::DVec3;
 
-/// Where a formula is evaluated: both zeros, both infinities, denormal and huge numbers among the ordinary.
+/// Values at which a formula is evaluated: both zeros, both infinities, denormal and huge numbers among the ordinary.
 const AT: [f64; 12] =
     [0.0, -0.0, 0.3, 1.0, -1.5, 1e-9, 5e-324, 1e15, 1e308, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
 
