@@ -1,4 +1,4 @@
-//! How many virtual point lights a core gathers, and whether surfaces and medium pay for each other.
+//! Rate at which a core gathers virtual point lights, and the price that surfaces and medium pay for each other.
 //!
 //! `cargo bench --bench connections` measures with criterion, and then prints ratios of two loops that ran in turn within this run.
 

@@ -1,4 +1,4 @@
-//! What the estimators beyond the papers cost beside their look-ups, and what a field behind a pointer costs them.
+//! Cost of the estimators beyond the papers beside their look-ups, and of a field behind a pointer.
 //!
 //! `cargo bench --bench estimators` measures with criterion, and then prints ratios of two loops that ran in turn within this run.
 

@@ -1,4 +1,4 @@
-//! What a look-up costs inside an estimator, beside the bare look-up.
+//! Cost of a look-up inside an estimator, beside the bare look-up.
 //!
 //! `cargo bench --bench lookups` measures with criterion, and then prints ratios of two loops that ran in turn within
 //! this run: on a machine whose speed drifts, ratios are what can be compared.

@@ -1,4 +1,4 @@
-//! What a second thread brings: the same measurement on one thread and on two, in turn, within one run.
+//! Gain of a second thread: the same measurement on one thread and on two, in turn, within one run.
 
 use fairflight_harness::field::MediumLibrary;
 use fairflight_harness::plan::Plan;

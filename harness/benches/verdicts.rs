@@ -12,7 +12,7 @@ use lawful_runs::{LawfulRun, Outcome, lawful_run, outcome};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// What every estimate is multiplied with: a bias of one percent.
+/// Factor of every estimate: a bias of one percent.
 const FACTOR: f64 = 1.01;
 
 fn word(sound: Option<bool>) -> &'static str {

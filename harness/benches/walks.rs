@@ -1,4 +1,4 @@
-//! What a collision of a particle tracer costs, beside the least that it can cost.
+//! Cost of a collision of a particle tracer, beside the least that it can cost.
 //!
 //! `cargo bench --bench walks` measures with criterion, and then prints ratios of two loops that ran in turn within this run.
 
