@@ -1,4 +1,4 @@
-//! What is answered: a recommendation with its reasons, as JSON and as a table.
+//! The answer: a recommendation with its reasons, as JSON and as a table.
 
 use crate::comparison::{Bout, Entrant, Facts, Gain, RaySet};
 use crate::result::Provenance;
@@ -25,7 +25,7 @@ pub(super) struct Answer {
     measured: Vec<Advice>,
     /// Every estimator by what was expected of it, cheapest first.
     expected: Vec<Contestant>,
-    /// Where the numbers come from.
+    /// Seed, revision and command that the numbers come from.
     provenance: Provenance,
     /// Rays whose reference is not certified: told to a person.
     #[serde(skip)]
@@ -71,7 +71,7 @@ pub(super) struct Contestant {
     how: How,
 }
 
-/// How a price is known.
+/// Source of a price.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum How {

@@ -1,4 +1,4 @@
-//! What an estimator is expected to cost on a ray, before it is run.
+//! Forecast of the variance and the cost of an estimator on a ray, before it is run.
 
 use crate::comparison::TestRay;
 use crate::estimator::{
@@ -10,7 +10,7 @@ use fairflight_transmittance::{
     Comb, CombShape, Forecast, Pilot, Roulette, UnbiasedRayMarching, predicted_relative_variance, teeth_for,
 };
 
-/// What forecasts on a ray are made of.
+/// Facts about a ray that forecasts are made of.
 pub(super) struct Signs {
     /// ∫ σ_t over the ray.
     thickness: f64,

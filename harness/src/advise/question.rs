@@ -1,4 +1,4 @@
-//! What is asked: a medium, and the rays that matter in it.
+//! The question: a medium, and the rays that matter in it.
 
 use crate::cli::AdviseArguments;
 use crate::comparison::{RaySet, chords};
@@ -17,20 +17,21 @@ use std::io::Read;
 
 /// Chords shorter than this share of the medium's extent say little.
 const LEAST: f64 = 0.1;
-/// How exactly the transmittance of a ray is known, relative to its optical thickness: well below any variance that is measured.
+/// Error of the transmittance of a ray that is granted, relative to its optical thickness: well below any variance that is
+/// measured.
 const TOLERANCE: f64 = 1e-7;
 /// The stream that the rays are chosen from.
 const RAYS: &str = "advise/rays";
 /// Camera rays that are tried for one that meets the medium.
 const TRIES: usize = 200;
 
-/// What a scene is told that is not taken.
+/// Answer to a scene for which no advice is given.
 const ALTERNATIVES: &str = "what a picture costs is not measured; advice is given for transmittance along rays: of --vdb FILE, or of \
     MEDIUM.json, which holds a medium as in an experiment";
 
 /// A medium and how its rays are chosen.
 pub(super) struct Question {
-    /// What it is called in the answer.
+    /// Name of the medium in the answer.
     pub(super) name: String,
     /// The text that was read; none where the command line says all.
     input: Option<Input>,
@@ -42,7 +43,7 @@ pub(super) struct Question {
     majorant: Option<f64>,
 }
 
-/// Whether the picture of a scene is the background, attenuated: then estimates of transmittance along camera
+/// Checks that the picture of a scene is the background, attenuated: then estimates of transmittance along camera
 /// rays are all that it costs.
 ///
 /// # Errors

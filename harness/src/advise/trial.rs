@@ -18,10 +18,10 @@ const TRIAL: Effort = Effort { samples: 64, counted: 64, closed: false };
 const MEASUREMENT: Effort = Effort { samples: 1024, counted: 256, closed: false };
 /// Rays of a trial.
 const TRIAL_RAYS: usize = 16;
-/// How many are measured beside ratio tracking.
+/// Number of estimators that are measured beside ratio tracking.
 const BEST: usize = 5;
 
-/// What is expected of an entrant: mean ln(variance · look-ups) over the rays.
+/// Expected price of an entrant: mean ln(variance · look-ups) over the rays.
 struct Expected {
     entrant: Entrant,
     log_price: f64,
