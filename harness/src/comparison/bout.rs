@@ -7,7 +7,7 @@ use crate::experiment::draw;
 use crate::reference::predict;
 use fairflight_media::Tolerance;
 
-/// What an estimator did on a ray.
+/// Result of one estimator on one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bout {
     /// Var/T², in closed form where there is one, else as measured.
@@ -16,7 +16,7 @@ pub struct Bout {
     pub measured_variance: f64,
     /// The standard error of the measured one, from its sample's fourth moment.
     pub variance_error: f64,
-    /// Whether it is the closed form.
+    /// True if `relative_variance` is the closed form.
     pub is_closed: bool,
     /// Look-ups of one estimate.
     pub lookups: f64,
@@ -34,12 +34,12 @@ pub struct Bout {
     pub kurtosis: Option<f64>,
     /// Estimates drawn.
     pub samples: u64,
-    /// Whether the transmittance of the ray is certified.
+    /// True if the transmittance of the ray is certified.
     pub is_certified: bool,
 }
 
 impl Bout {
-    /// How far the mean is from the truth, in standard errors; `None` where there is no error but rounding, the truth is
+    /// Deviation of the mean from the truth, in standard errors; `None` where there is no error but rounding, the truth is
     /// not certified, or the law is not mild: a heavy tail that was not met shows a mean too small, and a variance too small with it.
     #[must_use]
     pub fn z(&self) -> Option<f64> {
@@ -53,7 +53,7 @@ impl Bout {
     }
 }
 
-/// The z-scores of many bouts as one.
+/// The z-scores of many results as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pooled {
     /// Their sum over the square root of their number: a standard normal variate if all means are right.
@@ -63,7 +63,7 @@ pub struct Pooled {
 }
 
 impl Pooled {
-    /// Whether chance explains it, in tables of a hundred rows.
+    /// True if chance explains it, in tables of a hundred rows.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         const CRITICAL: f64 = 6.0;
@@ -71,21 +71,21 @@ impl Pooled {
     }
 }
 
-/// The bouts whose law is mild, together.
+/// The pooled z-score of the results whose law is mild.
 pub fn pooled<'a>(bouts: impl Iterator<Item = &'a Bout>) -> Pooled {
     let scores: Vec<f64> = bouts.filter_map(Bout::z).collect();
     let z = scores.iter().sum::<f64>() / (scores.len().max(1) as f64).sqrt();
     Pooled { z, bouts: scores.len() }
 }
 
-/// How thoroughly a bout is fought.
+/// Effort of the measurement on a ray: its estimates, and whether closed forms are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
     /// Estimates.
     pub samples: u64,
-    /// Of how many the look-ups are counted.
+    /// Estimates whose look-ups are counted.
     pub counted: u64,
-    /// Whether closed forms are evaluated, where there are any and they take no tens of milliseconds.
+    /// True if closed forms are evaluated, where there are any and they take no tens of milliseconds.
     pub closed: bool,
 }
 

@@ -7,18 +7,18 @@ use crate::parallel::{in_parallel, try_in_parallel};
 use fairflight_sources::named_seed;
 use fairflight_transmittance::{Experience, Pilot};
 
-/// What came of a contest.
+/// Results of all entrants on all rays.
 #[derive(Clone, Debug)]
 pub struct Contest {
-    /// Who took part.
+    /// The entrants.
     pub entrants: Vec<Entrant>,
-    /// For each entrant its bouts, in the order of the rays.
+    /// For each entrant its results, in the order of the rays.
     pub bouts: Vec<Vec<Bout>>,
     /// Look-ups of the pilots, per ray.
     pub pilot_lookups: f64,
 }
 
-/// What is known before each ray: the pilots of the rays before it, those of the last rays before the first; never its own.
+/// Facts that are known before each ray: the pilots of the rays before it, those of the last rays before the first; never its own.
 ///
 /// Each ray is looked at once by a pilot with variates of its own; look-ups of pilots are not charged to estimates.
 #[must_use]
@@ -38,7 +38,7 @@ pub fn facts(set: &RaySet, seed: u64) -> Vec<Facts> {
         .collect()
 }
 
-/// What a few pilots of the same ray tell, with variates of their own.
+/// Facts about a ray from a few pilots of that ray, with variates of their own.
 #[must_use]
 pub fn facts_of(ray: &TestRay, seed: u64) -> Facts {
     const PILOTS: u64 = 8;
@@ -50,7 +50,7 @@ pub fn facts_of(ray: &TestRay, seed: u64) -> Facts {
     Facts { mean: ray.truth.optical_thickness / ray.profile.length(), experience }
 }
 
-/// Lets all entrants meet all rays, each with a stream of its name on each ray. `advance` is told of each bout.
+/// Runs all entrants on all rays, each with a stream of its name on each ray. `advance` is told of each result.
 ///
 /// # Errors
 /// If an entrant is not defined on a ray.
@@ -70,7 +70,7 @@ pub fn contest(
     Ok(Contest { entrants, bouts, pilot_lookups: lookups as f64 / set.rays.len().max(1) as f64 })
 }
 
-/// Lets an entrant meet the rays of a set, of which it knows the `facts`: each with a stream of its own. `advance` is told of each bout.
+/// Runs an entrant on the rays of a set, of which it knows the `facts`: each with a stream of its own. `advance` is told of each result.
 ///
 /// # Errors
 /// If it is not defined on a ray.

@@ -1,4 +1,4 @@
-//! Who takes part: an estimator whose parameters follow from the ray.
+//! Entrants of a comparison: estimators whose parameters follow from the ray.
 
 use super::TestRay;
 use crate::Failure;
@@ -9,28 +9,28 @@ use crate::estimator::{
 };
 use fairflight_transmittance::{Choice, CombShape, Experience, Hybrid, PSeriesVersion, Roulette};
 
-/// What an entrant may know beside the ray: nothing of it comes from the variates that will estimate.
+/// Facts that an entrant may know beside the ray: nothing of it comes from the variates that will estimate.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     /// The mean of σ_t over the medium \[1/length\].
     pub mean: f64,
-    /// What earlier rays taught.
+    /// The pilots of earlier rays.
     pub experience: Experience,
 }
 
 /// An estimator whose parameters follow from the ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Entrant {
-    /// What it is called.
+    /// Name in tables and plots.
     pub name: &'static str,
-    /// Whether it is published; else it is of this project.
+    /// True if it is published; else it is of this project.
     pub published: bool,
-    /// Whether it asks for a majorant and a minorant in cells along the ray.
+    /// True if it asks for a majorant and a minorant in cells along the ray.
     pub needs_cells: bool,
     parameters: fn(&TestRay, &Facts) -> Parameters,
 }
 
-/// What an entrant makes of a ray.
+/// Parameters of an entrant for one ray.
 #[derive(Clone, Debug)]
 enum Parameters {
     Spec(EstimatorSpec),
@@ -63,7 +63,7 @@ impl Entrant {
         }
     }
 
-    /// What it runs as on a ray, as an experiment's estimator; a hybrid as what it chose.
+    /// The estimator that it runs as on a ray, as in an experiment; for a hybrid the one that it chose.
     #[must_use]
     pub fn spec(&self, ray: &TestRay, facts: &Facts) -> Option<EstimatorSpec> {
         match (self.parameters)(ray, facts) {

@@ -1,9 +1,9 @@
-//! How much an estimator gains over ratio tracking, over many rays.
+//! Gain of an estimator over ratio tracking, over many rays.
 
 use super::Bout;
 use fairflight_sources::{Seeded, UniformSource};
 
-/// What is paid.
+/// Unit of cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Look-ups of σ_t.

@@ -1,7 +1,7 @@
-//! Estimators compared on rays: what the report on estimators and `harness advise` share.
+//! Estimators compared on rays: the part that the report on estimators and `harness advise` share.
 //!
-//! An [`Entrant`] is an estimator whose parameters follow from the ray. It meets every ray of a [`RaySet`]; a [`Bout`] is what came of it
-//! on one of them, a [`Gain`] how much cheaper it is than ratio tracking over all.
+//! An [`Entrant`] is an estimator whose parameters follow from the ray. It runs on every ray of a [`RaySet`]; a [`Bout`] is its result
+//! on one of them, a [`Gain`] its efficiency over that of ratio tracking, over all.
 
 mod bout;
 mod contest;
