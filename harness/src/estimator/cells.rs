@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 /// Cells with a minorant and a majorant each, as given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CellsSpec {
-    /// So many equal ones along the profile, their bounds found from the field.
+    /// A number of equal cells along the profile, their bounds found from the field.
     Count(u32),
     /// Claimed.
     Given {

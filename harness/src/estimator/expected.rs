@@ -1,4 +1,4 @@
-//! What an estimator is expected to look up, from the rates of its spec, before it is built.
+//! Expected look-ups of an estimator, from the rates of its spec, before it is built.
 
 use super::{CellsSpec, EstimatorSpec, SamplingSpec};
 use crate::field::AnyProfile;
@@ -6,11 +6,11 @@ use crate::field::AnyProfile;
 /// Look-ups of an estimator on one ray. An infinite number is lawful, and too many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// Of all that is done once before the first estimate.
+    /// Look-ups of all that is done once before the first estimate.
     pub preparation: f64,
     /// The part of it that a scene does anew for each ray.
     pub on_each_ray: f64,
-    /// Of one estimate, on average.
+    /// Look-ups of one estimate, on average.
     pub estimate: Expected,
     /// The key of the spec that they come from.
     pub key: &'static str,
@@ -21,11 +21,11 @@ pub struct Work {
 pub enum Expected {
     /// The same on every profile.
     Exactly(f64),
-    /// So many where nothing ends a walk, and never less than some; between them only the closed form tells.
+    /// At least the first number and at most the second, which holds where nothing ends a walk; between them only the closed form tells.
     Between(f64, f64),
 }
 
-/// What is known of a ray: `from` its entry \[length\], over `length`, σ_t at most `upper_bound` where one is
+/// Known facts about a ray: `from` its entry \[length\], over `length`, σ_t at most `upper_bound` where one is
 /// declared, smooth but in `breakpoints` places.
 #[derive(Clone, Copy, Debug)]
 pub struct RayKnown {
@@ -81,7 +81,7 @@ impl Work {
         spec.kind().work(RayKnown { from, length, upper_bound, breakpoints })
     }
 
-    /// Of so many estimates, each with so many look-ups of its own; one that looks up nothing costs as much as
+    /// The look-ups of so many estimates, each with so many look-ups of its own; one that looks up nothing costs as much as
     /// one that does once.
     #[must_use]
     pub fn total(&self, estimates: u64, lookups: f64) -> f64 {
@@ -147,7 +147,7 @@ mod tests {
     use crate::spec::{Overrides, Request};
     use fairflight_media::Tolerance;
 
-    /// What a spec promises for a ray of length 4 with σ_t between 0.2 and 1, and what 20 000 estimates look up.
+    /// Expected work by a spec for a ray of length 4 with σ_t between 0.2 and 1, and the look-ups per sample of 20 000 estimates.
     fn promised_and_found(estimator: &str) -> (Work, f64) {
         let spec = format!(
             r#"{{ "profile": {{ "kind": "piecewise_linear", "positions": [0, 1, 4], "sigma_t": [0.2, 1, 0.4] }},

@@ -98,7 +98,7 @@ impl Choices {
         Self((0..Self::OCTAVES).flat_map(|k| Self::STEPS.map(|step| choose(step * octave(k)))).collect())
     }
 
-    /// That of the shortest class that is as long as the ray.
+    /// The choice of the shortest class that is as long as the ray.
     fn on(&self, length: f64) -> &Hybrid {
         let shorter = self.0.partition_point(|(class, _)| *class >= length);
         &self.0[shorter.saturating_sub(1)].1

@@ -113,7 +113,7 @@ pub trait EstimatorKind {
     /// The look-ups on a ray, before anything is built.
     fn work(&self, ray: RayKnown) -> Work;
 
-    /// Whether this is a labelled biased baseline.
+    /// True for a labelled biased baseline.
     fn is_biased_baseline(&self) -> bool {
         false
     }
@@ -154,7 +154,7 @@ impl EstimatorSpec {
         }
     }
 
-    /// Whether this is a labelled biased baseline.
+    /// True for a labelled biased baseline.
     #[must_use]
     pub fn is_biased_baseline(&self) -> bool {
         self.kind().is_biased_baseline()

@@ -1,4 +1,4 @@
-//! What is learned on a profile before the first estimate, where there are no earlier rays: from streams that no estimate draws from.
+//! Knowledge of a profile gained before the first estimate, where there are no earlier rays: from streams that no estimate draws from.
 
 use crate::field::AnyProfile;
 use fairflight_media::{Bounded, Counted};

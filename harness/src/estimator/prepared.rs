@@ -27,9 +27,9 @@ pub struct Prepared {
     pub explorers: Option<fairflight_transmittance::Explorers>,
     /// Distances at which the control or the sampling extinction is not smooth \[length\].
     pub breakpoints: Vec<f64>,
-    /// Whether estimates must be drawn one after another, since each learns from those before it.
+    /// True if estimates must be drawn one after another, since each learns from those before it.
     pub is_sequential: bool,
-    /// Whether its closed form takes tens of milliseconds and more.
+    /// True if its closed form takes tens of milliseconds and more.
     pub closed_form_is_costly: bool,
     pub(super) scores: Arc<ScoresOf>,
     pub(super) objection: Arc<Objection>,

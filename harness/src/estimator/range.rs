@@ -1,4 +1,4 @@
-//! Which values an estimate can take, and which of σ_t it admits.
+//! Range of the values that an estimate can take, and of those of σ_t that it admits.
 //!
 //! An end of the law of an estimate is what a verdict without a closed variance rests on.
 

@@ -19,7 +19,7 @@ kind! {
 }
 
 impl RayMarchingSpec {
-    /// So many steps, with a look-up of each at `offset`.
+    /// The spec of ray marching with so many steps, with a look-up of each at `offset`.
     #[must_use]
     pub fn at(steps: u32, offset: Offset) -> Self {
         Self { steps, jitter: offset == Offset::Jittered }

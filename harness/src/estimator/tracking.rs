@@ -1,4 +1,4 @@
-//! What single and double particle tracking have in common.
+//! Common parts of single and double particle tracking.
 
 use super::ray::{RayControl, RayTracking};
 use super::{AnyControl, AnySampling, ControlSpec, FOR_ONE_RAY, Prepared, SamplingSpec, refuse};
