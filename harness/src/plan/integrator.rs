@@ -27,11 +27,11 @@ pub enum IntegratorPlan {
     PhotonTracer(WalkPlan),
     /// raab-2008 section 3.1.
     LineSplitting {
-        /// How each flight goes on.
+        /// The walk by which each flight goes on.
         walk: WalkPlan,
         /// The flights.
         line: LineIntegral,
-        /// Of their first steps.
+        /// The choice of the first steps of the flights.
         starts: Starts,
         /// The claimed majorant.
         majorant: f64,
@@ -60,7 +60,7 @@ pub struct Counts {
     pub truncated: u64,
     /// Compensation vertices that were tried.
     pub compensation_tried: u64,
-    /// Those of them that lay where something was lost.
+    /// Compensation vertices that lay where something was lost.
     pub compensation_inside: u64,
 }
 
@@ -174,7 +174,7 @@ impl IntegratorPlan {
         }
     }
 
-    /// Whether the pixels of a pass share a batch that is prepared for it: a pass is then of one sample per pixel.
+    /// True if the pixels of a pass share a batch that is prepared for it: a pass is then of one sample per pixel.
     #[must_use]
     pub fn draws_in_batches(&self) -> bool {
         match self {
@@ -240,7 +240,7 @@ impl IntegratorPlan {
         }
     }
 
-    /// Whether walks are defined where σ_t lies in this range; the estimators of transmittance watch their own look-ups.
+    /// Checks that walks are defined where σ_t lies in this range; the estimators of transmittance watch their own look-ups.
     ///
     /// # Errors
     /// If they are not.
@@ -276,7 +276,7 @@ impl IntegratorPlan {
     }
 }
 
-/// Whether a claimed majorant is one.
+/// Checks that a claimed majorant is one.
 pub(super) fn admits_majorant(
     key: &str,
     majorant: f64,

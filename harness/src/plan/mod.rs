@@ -31,7 +31,7 @@ use crate::spec::Experiment;
 pub struct Plan {
     /// The extinction along the ray.
     pub profile: AnyProfile,
-    /// What estimates its transmittance, prepared for that ray.
+    /// The estimator of its transmittance, prepared for that ray.
     pub estimator: Prepared,
     /// The estimator as it was asked for.
     pub spec: EstimatorSpec,
@@ -39,7 +39,7 @@ pub struct Plan {
     pub samples: u64,
     /// The seed of their variates.
     pub seed: u64,
-    /// Of how many estimates the look-ups are counted.
+    /// Number of estimates whose look-ups are counted.
     pub counted: u64,
 }
 

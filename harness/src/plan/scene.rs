@@ -16,17 +16,17 @@ use glam::DVec3;
 /// A scene that can be rendered.
 #[derive(Debug)]
 pub struct ScenePlan {
-    /// Who looks.
+    /// The camera.
     pub camera: Camera,
-    /// What is looked through.
+    /// The extinction of the medium.
     pub medium: AnyMedium,
-    /// Where it is.
+    /// The bounds of the medium.
     pub bounds: Bounds,
-    /// Whereto it scatters.
+    /// The phase function of the medium.
     pub phase: AnyPhase,
     /// Albedo, lights and surfaces, in as many channels as they need.
     pub spectra: Spectra,
-    /// What estimates a pixel.
+    /// The estimator of a pixel.
     pub integrator: IntegratorPlan,
     /// Estimates per pixel.
     pub samples_per_pixel: u32,
@@ -45,14 +45,14 @@ pub enum Spectra {
     Separate(Box<[Radiant<f64>; 3]>),
 }
 
-/// What has a colour.
+/// Albedo, lights and surfaces: the parts of a scene that have a colour.
 #[derive(Debug)]
 pub struct Radiant<C> {
     /// σ_s/σ_t.
     pub albedo: C,
-    /// What shines, but for surfaces.
+    /// The lights that are no surfaces.
     pub lights: Lights<C>,
-    /// What stands in the way, and may shine.
+    /// The surfaces, which may emit light.
     pub surfaces: Surfaces<C>,
 }
 

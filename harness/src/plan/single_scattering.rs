@@ -65,7 +65,7 @@ impl SingleScatteringPlan {
         })
     }
 
-    /// Whether the walk of the camera ray is defined where σ_t has this value.
+    /// Checks that the walk of the camera ray is defined where σ_t has this value.
     pub(super) fn admits(&self, range: (f64, f64)) -> Result<(), Failure> {
         if let PrimaryPlan::Line { majorant, .. } = self.primary {
             return admits_majorant("integrator.estimator.majorant", majorant, range);

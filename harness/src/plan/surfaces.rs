@@ -27,7 +27,7 @@ pub(super) fn build<C: Spectrum>(
     Ok(Surfaces::new(all.collect::<Result<_, _>>()?))
 }
 
-/// Whether the parts of a scene fit its surfaces.
+/// Checks that the parts of a scene fit its surfaces.
 ///
 /// # Errors
 /// If the integrator is blind to them, or nothing of a light can be seen because of them.

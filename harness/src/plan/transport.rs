@@ -13,12 +13,12 @@ use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface
 use fairflight_vpl::{Component, Gather, Pairing, Term, Vpl, VplIntegrator};
 use std::cell::Cell;
 
-/// What an integrator meets beside the medium.
+/// Parts of a scene that an integrator meets beside the medium.
 #[derive(Debug)]
 pub struct Stage<'s, C> {
-    /// What shines, but for surfaces.
+    /// The lights that are no surfaces.
     pub lights: &'s Lights<C>,
-    /// What stands in the way, and may shine.
+    /// The surfaces, which may emit light.
     pub surfaces: &'s Surfaces<C>,
     /// Virtual point lights, for an integrator that gathers from them.
     pub vpls: &'s [Vpl<C>],
@@ -33,7 +33,7 @@ impl<C> Clone for Stage<'_, C> {
 }
 impl<C> Copy for Stage<'_, C> {}
 
-/// How paths travel, with its parameters checked.
+/// Flights, connections and weights of paths, with their parameters checked.
 #[derive(Debug)]
 pub struct TransportPlan {
     /// Flights.
@@ -46,7 +46,7 @@ pub struct TransportPlan {
 /// A path tracer whose parameters are checked.
 #[derive(Debug)]
 pub struct PathTracerPlan {
-    /// How it travels.
+    /// The flights and connections of its paths.
     pub transport: TransportPlan,
     max_vertices: u32,
 }
@@ -54,7 +54,7 @@ pub struct PathTracerPlan {
 /// Virtual point lights whose parameters are checked.
 #[derive(Debug)]
 pub struct VplPlan {
-    /// How light paths and eye rays travel.
+    /// The flights and connections of light paths and eye rays.
     pub transport: TransportPlan,
     /// Light paths per set.
     pub light_paths: u32,

@@ -77,7 +77,7 @@ impl WalkPlan {
         Walk::new(self.version, sampling).with_max_collisions(self.max_collisions)
     }
 
-    /// Whether the walks are defined where σ_t lies in this range.
+    /// Checks that the walks are defined where σ_t lies in this range.
     pub(super) fn admits(&self, (lowest, highest): (f64, f64), albedo: f64) -> Result<(), Failure> {
         let model = SingleParticle {
             version: self.version,
@@ -98,7 +98,7 @@ impl WalkPlan {
         Ok(())
     }
 
-    /// Whether the walks have a second moment in a volume; a warning where that is not known.
+    /// Checks that the walks have a second moment in a volume; a warning where that is not known.
     ///
     /// # Errors
     /// If they have none, and the spec does not allow that.
