@@ -7,7 +7,7 @@ use fairflight_scene::Spectrum;
 use fairflight_stats::Moments;
 use glam::DVec3;
 
-/// What was drawn so far of an image of one seed.
+/// The part of an image of one seed that is drawn so far.
 #[derive(Clone, Debug)]
 pub(super) struct Canvas<C> {
     pub seed: u64,
@@ -18,9 +18,9 @@ pub(super) struct Canvas<C> {
     pub samples: u32,
     /// The mean over pixels and channels of each pass.
     pub pass_means: Vec<f64>,
-    /// What is not drawn pixel by pixel.
+    /// The part of the image that is not drawn pixel by pixel.
     pub photons: Option<PhotonLayer<C>>,
-    /// What is to be said of the walks.
+    /// Warning about the walks.
     pub warning: Option<String>,
 }
 
@@ -33,11 +33,11 @@ pub(super) struct Drawn<C> {
     /// Per pixel.
     pub samples: u32,
     pub mean_variance: MeanVariance,
-    /// What is to be said of the walks.
+    /// Warning about the walks.
     pub warning: Option<String>,
 }
 
-/// Where the variance of the image's mean is to be taken from.
+/// Source of the variance of the image's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum MeanVariance {
     /// From the pixels, which share no randomness but for what adds this; `None` if that is not known.
@@ -46,7 +46,7 @@ pub(super) enum MeanVariance {
     OfPasses(Option<f64>),
 }
 
-/// What drawing cost.
+/// Cost of drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spent {
     /// Look-ups of the medium.
@@ -61,7 +61,7 @@ pub(super) struct Spent {
     pub light_path_seconds: f64,
     /// Compensation vertices that were tried.
     pub compensation_tried: u64,
-    /// Those that lay where something was lost.
+    /// Compensation vertices that lay where something was lost.
     pub compensation_inside: u64,
 }
 
@@ -114,7 +114,7 @@ impl Drawn<DVec3> {
 }
 
 impl MeanVariance {
-    /// Of the mean of three independent channels that were drawn alike.
+    /// The variance of the mean of three independent channels that were drawn alike.
     fn of_channels(channels: [Self; 3]) -> Self {
         let known = channels.map(|(Self::OfPixels { shared: known } | Self::OfPasses(known))| known);
         let sum = known.into_iter().sum::<Option<f64>>().map(|sum| sum / 9.0);

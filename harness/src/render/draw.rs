@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What is drawn: shared by all workers.
+/// Parts of a scene that are drawn: shared by all workers.
 #[derive(Clone, Copy)]
 pub(super) struct Draw<'a, C> {
     pub plan: &'a ScenePlan,
@@ -172,7 +172,7 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         }
     }
 
-    /// Whether the walks of the integrator have a second moment. Its look-ups are not part of the cost: it is a diagnosis.
+    /// Checks that the walks of the integrator have a second moment. Its look-ups are not part of the cost: it is a diagnosis.
     fn check_growth(&self) -> Result<Option<String>, Failure> {
         let is_empty = matches!(self.plan.medium, AnyMedium::Empty);
         let Some(walk) = self.plan.integrator.walk().filter(|_| !is_empty) else { return Ok(None) };
@@ -183,7 +183,7 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         growth
     }
 
-    /// Whether all look-ups so far were lawful.
+    /// Checks that all look-ups so far were lawful.
     pub(super) fn judge<M: Medium>(&self, observed: &Observed<M>) -> Result<(), Failure> {
         if !observed.is_finite() {
             return Err(Failure::refused("medium: sigma_t is not finite somewhere"));

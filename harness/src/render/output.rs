@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// What a file is to hold.
+/// Content of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// The picture.
@@ -20,7 +20,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// What the extension says.
+    /// The content by the extension.
     fn of(path: &Path) -> Result<Self, Failure> {
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
             return Ok(Self::Statistics);

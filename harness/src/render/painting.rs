@@ -39,7 +39,7 @@ impl<'p> Painting<'p> {
         Self { plan, canvases, samples: 0 }
     }
 
-    /// Whether all samples of the plan are drawn.
+    /// True if all samples of the plan are drawn.
     pub(crate) fn is_complete(&self) -> bool {
         self.samples >= self.plan.samples_per_pixel
     }
@@ -83,7 +83,7 @@ impl<'p> Painting<'p> {
         Ok(())
     }
 
-    /// What was drawn so far.
+    /// Statistics of the samples so far.
     pub(crate) fn moments(&self) -> Moments {
         let batches = self.plan.integrator.draws_in_batches();
         match &self.canvases {

@@ -17,16 +17,16 @@ pub(super) enum End {
     Interrupted,
 }
 
-/// What was drawn.
+/// Painting with the time that it took, and why it ended.
 pub(super) struct Painted<'p> {
     pub painting: Painting<'p>,
-    /// That drawing took, by the clock on the wall.
+    /// Time that drawing took, by the clock on the wall \[s\].
     pub seconds: f64,
     pub end: End,
 }
 
 impl End {
-    /// What is to be said of an image that has fewer samples than it was asked for.
+    /// Warning about an image that has fewer samples than it was asked for.
     pub(super) fn warning(self, drawn: u32, asked: u32) -> Option<String> {
         let samples = format!("after {drawn} of {asked} samples per pixel");
         match self {

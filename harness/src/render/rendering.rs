@@ -24,7 +24,7 @@ pub(super) struct Rendering<'a> {
     pub media: &'a MediumLibrary,
     pub point: &'a Point<'a>,
     pub reference: Option<&'a (Image, String)>,
-    /// Of every picture, once it was asked for, and where it comes from.
+    /// The exposure of every picture, once it was asked for, and its source.
     pub exposure: OnceLock<(Exposure, &'static str)>,
     /// Points of the sweep that are done.
     pub before: &'a [SweepPoint<Statistics>],

@@ -1,4 +1,4 @@
-//! What an image tells: mean radiance, variance, cost, efficiency.
+//! Statistics of an image: mean radiance, variance, cost, efficiency.
 
 use super::canvas::{Drawn, MeanVariance, Spent};
 use super::pixel::Pixel;
@@ -22,7 +22,7 @@ pub(super) struct Statistics {
     pub exposure: Option<ShownAt>,
     /// Null for an integrator without any.
     pub virtual_point_lights: Option<VirtualLights>,
-    /// How mean squared error and efficiency are meant.
+    /// Definition of mean squared error and efficiency, in words.
     pub method: String,
     pub warnings: Vec<String>,
     pub provenance: Provenance,
@@ -32,7 +32,7 @@ pub(super) struct Statistics {
 pub(super) struct Size {
     pub width: u32,
     pub height: u32,
-    /// Those that were drawn.
+    /// Samples per pixel that were drawn.
     pub samples_per_pixel: u32,
     pub channels: usize,
 }
@@ -49,7 +49,7 @@ pub(super) struct Radiance {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Variance {
-    /// Of one sample, averaged over pixels and channels.
+    /// Variance of one sample, averaged over pixels and channels.
     #[serde(serialize_with = "number")]
     pub mean_per_pixel: Option<f64>,
 }
@@ -89,9 +89,9 @@ pub(super) struct VirtualLights {
     pub lights_per_set: f64,
     /// CPU seconds of light paths, a part of all.
     pub light_path_seconds: f64,
-    /// That were tried.
+    /// Number of compensation vertices that were tried.
     pub compensation_vertices: u64,
-    /// Of those, the share that lay where something was lost; null if none was tried.
+    /// Share of the compensation vertices that lay where something was lost; null if none was tried.
     #[serde(serialize_with = "number")]
     pub compensation_share_inside: Option<f64>,
 }
@@ -105,7 +105,7 @@ pub(super) struct Efficiency {
     pub per_lookup: Option<f64>,
 }
 
-/// What was drawn, read by all writers.
+/// Moments of the samples, read by all writers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moments {
     channels: usize,
@@ -281,7 +281,7 @@ impl Moments {
         self.samples
     }
 
-    /// What is to be said of the walks.
+    /// Warning about the walks.
     pub(super) fn warning(&self) -> Option<String> {
         self.warning.clone()
     }

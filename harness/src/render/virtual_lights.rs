@@ -15,11 +15,11 @@ use rayon::prelude::*;
 
 /// The streams of sets are children of this child of the seed: no pixel has its number.
 const LIGHT_STREAM: u64 = u64::MAX - 2;
-/// Of the paths that are traced to find out why a set is empty.
+/// The stream of the paths that are traced to find out why a set is empty.
 const TRIAL_STREAM: u64 = u64::MAX - 3;
-/// So many paths share a stream, and a worker.
+/// Number of paths that share a stream, and a worker.
 const CHUNK: u32 = 256;
-/// So few paths that deposit nothing prove nothing.
+/// Least number of paths that are traced to find out why a set is empty: fewer that deposit nothing prove nothing.
 const LEAST_TRIAL: u32 = 4096;
 
 struct Traced<C> {

@@ -1,11 +1,11 @@
-//! What a reader of an image should know.
+//! Warnings that a reader of an image should know.
 
 use super::passes::End;
 use super::statistics::Moments;
 use crate::plan::{IntegratorPlan, ScenePlan};
 use crate::spec::{ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, SceneSpec, SurfaceSpec};
 
-/// What is to be said; without an `end`, of an image that is still being drawn.
+/// The warnings; without an `end`, those of an image that is still being drawn.
 pub(super) fn warnings(
     spec: &SceneSpec,
     plan: &ScenePlan,

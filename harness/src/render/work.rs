@@ -1,9 +1,9 @@
-//! What an image is expected to look up, before its first pixel.
+//! Expected look-ups of an image, before its first pixel.
 //!
-//! Where the rates of the integrator tell, they are asked: an estimator of transmittance looks up its rate
+//! The rates of the integrator are asked where they tell: an estimator of transmittance looks up its rate
 //! times the chord of the bounds, and where collisions end it, times the part of the chord that light passes.
-//! How often a walk collides only walks tell: a few of them are sent, each cut after so many collisions that
-//! all together take a fraction of a second. A connection counts as a look-up.
+//! Only walks tell how often they collide: a few of them are sent, each cut after so many collisions that all
+//! together take a fraction of a second. A connection counts as a look-up.
 
 use super::pilot::reduced;
 use super::tile::Tile;
@@ -31,12 +31,12 @@ const LIGHT_PATHS: u32 = 64;
 const SPLITS: u32 = 4;
 const MEAN_CELLS: u32 = 16;
 const EYE_SAMPLES: u32 = 4;
-/// Of more look-ups the rate is the reason, of fewer the number of samples.
+/// Look-ups of a sample above which the rate is named as the reason, and below which the number of samples.
 const MOST_ORDINARY: f64 = 1e3;
 /// Memory for the pixels, and for virtual point lights \[bytes\].
 const MOST_MEMORY: f64 = (1_u64 << 34) as f64;
 
-/// How long an image may take.
+/// Limit of the time that an image may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Length {
     /// All samples are drawn.
@@ -107,7 +107,7 @@ pub(super) fn check(
     Ok(Work { lookups: lookups.max(paths), seconds: chords.profile.as_ref().map_or(0.0, seconds_per_lookup) })
 }
 
-/// Whether so many of something, of so many bytes each, may be kept in memory.
+/// Checks that so many of something, of so many bytes each, may be kept in memory.
 fn in_memory(key: &str, count: f64, what: &str, bytes: usize) -> Result<(), Failure> {
     let needed = count * bytes as f64;
     if needed <= MOST_MEMORY {
@@ -217,7 +217,7 @@ fn lit_length(profile: &AnyProfile) -> f64 {
     step * passed
 }
 
-/// What a few walks looked up.
+/// Look-ups and lights of a few walks.
 struct Walks {
     /// Per camera path, with all that belongs to it.
     each: f64,
