@@ -13,7 +13,7 @@ use std::path::Path;
 pub struct Experiment {
     /// The extinction along the ray.
     pub profile: ProfileSpec,
-    /// What estimates its transmittance.
+    /// The estimator of its transmittance.
     pub estimator: EstimatorSpec,
     /// The number of estimates.
     pub samples: u64,
@@ -21,7 +21,7 @@ pub struct Experiment {
     pub seed: u64,
 }
 
-/// What the command line says instead of the spec.
+/// Options of the command line that take the place of keys of the spec.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overrides {
     /// `--samples`

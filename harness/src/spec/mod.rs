@@ -1,4 +1,4 @@
-//! What is to be measured, as data: the experiment of `harness estimate`, the scene of `harness render`, and the points
+//! Specs of measurements, as data: the experiment of `harness estimate`, the scene of `harness render`, and the points
 //! of every report.
 //!
 //! A spec is what was asked for, checked in itself (types, signs, lengths of lists). Whether it fits together (a

@@ -33,7 +33,7 @@ impl ColourSpec {
         }
     }
 
-    /// Whether one channel says it all. A list of three equal numbers is gray.
+    /// True if all channels have one value. A list of three equal numbers is gray.
     #[must_use]
     pub fn is_gray(&self) -> bool {
         let [r, g, b] = self.rgb();

@@ -29,15 +29,15 @@ use std::path::Path;
 /// A scene as given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSpec {
-    /// Who looks.
+    /// The camera.
     pub camera: Camera,
-    /// What scatters; without it, vacuum.
+    /// The medium; without it, vacuum.
     pub medium: Option<VolumeSpec>,
-    /// What shines.
+    /// The lights that are no surfaces.
     pub lights: Vec<LightSpec>,
-    /// What stands in the way, and may shine.
+    /// The surfaces, which may emit light.
     pub surfaces: Vec<SurfaceSpec>,
-    /// What estimates a pixel.
+    /// The estimator of a pixel.
     pub integrator: IntegratorSpec,
     /// Estimates per pixel.
     pub samples_per_pixel: u32,
@@ -45,7 +45,7 @@ pub struct SceneSpec {
     pub seed: u64,
 }
 
-/// What the command line says instead of the spec.
+/// Options of the command line that take the place of keys of the spec.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneOverrides {
     /// `--samples-per-pixel`
@@ -113,7 +113,7 @@ impl SceneSpec {
         Ok(Self { camera, medium, lights, surfaces, integrator, samples_per_pixel: samples as u32, seed })
     }
 
-    /// Whether one channel is enough: no light, no surface and no albedo has a colour. What an environment map holds is not known here.
+    /// True if one channel is enough: no light, no surface and no albedo has a colour. The colours of environment maps are not known here.
     #[must_use]
     pub fn is_gray(&self) -> bool {
         self.medium.iter().all(|medium| medium.albedo.is_gray())

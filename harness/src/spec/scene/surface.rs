@@ -115,13 +115,13 @@ impl SurfaceSpec {
         Ok(Self { shape, material, emission })
     }
 
-    /// Whether it shines.
+    /// True if the surface emits light.
     #[must_use]
     pub fn emits(&self) -> bool {
         self.emission.rgb() != [0.0; 3]
     }
 
-    /// Whether one channel says it all.
+    /// True if one channel is enough.
     #[must_use]
     pub fn is_gray(&self) -> bool {
         let reflects_gray = match &self.material {
@@ -172,13 +172,13 @@ impl ShapeKind for SphereSpec {
 }
 
 impl ShapeSpec {
-    /// Whether it is a ball with `point` strictly inside; nothing lies inside a rectangle.
+    /// True for a ball with `point` strictly inside; nothing lies inside a rectangle.
     #[must_use]
     pub fn encloses(&self, point: DVec3) -> bool {
         self.kind().ball().is_some_and(|(center, radius)| center.distance(point) < radius)
     }
 
-    /// Whether it is a ball with all of `other` strictly inside.
+    /// True for a ball with all of `other` strictly inside.
     #[must_use]
     pub fn encloses_all_of(&self, other: &Self) -> bool {
         let Some((center, radius)) = self.kind().ball() else { return false };

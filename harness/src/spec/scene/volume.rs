@@ -12,7 +12,7 @@ pub struct VolumeSpec {
     pub medium: MediumSpec,
     /// σ_s/σ_t.
     pub albedo: ColourSpec,
-    /// Whereto it scatters.
+    /// The phase function.
     pub phase: PhaseSpec,
 }
 

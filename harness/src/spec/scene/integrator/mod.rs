@@ -39,7 +39,7 @@ pub trait IntegratorKind {
         None
     }
 
-    /// Whether it takes account of surfaces.
+    /// True if it takes account of surfaces.
     fn knows_surfaces(&self) -> bool {
         false
     }

@@ -42,7 +42,7 @@ const MOST_CELLS: u64 = 256;
 /// A part of the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ComponentSpec {
-    /// All of it.
+    /// The whole light.
     #[default]
     All,
     /// The light of connections with virtual point lights.
