@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::field::AnyProfile;
 use cpu_time::ThreadTime;
 
-/// How many look-ups a run may be expected to make.
+/// Number of look-ups that a run may be expected to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget(f64);
 
@@ -12,13 +12,13 @@ impl Budget {
     /// Without a word on the command line: at 30 ns a look-up, fifty minutes on one core.
     pub const USUAL: Self = Self(1e11);
 
-    /// Of so many look-ups.
+    /// The budget of so many look-ups.
     #[must_use]
     pub fn of(lookups: f64) -> Self {
         Self(lookups)
     }
 
-    /// Whether a run of so many look-ups may start; `key` is what they come from, `because` says how.
+    /// Checks that a run of so many look-ups may start; `key` is what they come from, `because` says how.
     ///
     /// # Errors
     /// If they are more, or nobody can tell.
@@ -33,8 +33,8 @@ impl Budget {
     }
 }
 
-/// What an estimate spends beside a look-up: a variate, a logarithm and a few branches take 8 to 12 ns, and
-/// what puts them together as much again (`cargo bench --bench lookups`).
+/// Time of an estimate beside a look-up \[s\]: a variate, a logarithm and a few branches take 8 to 12 ns, and
+/// the code that puts them together as much again (`cargo bench --bench lookups`).
 const BESIDE: f64 = 20e-9;
 /// An hour \[s\].
 const LONG: f64 = 3600.0;

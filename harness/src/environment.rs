@@ -1,4 +1,4 @@
-//! Where a run takes place: its command, its revision, its threads, its terminal.
+//! Surroundings of a run: its command, its revision, its threads, its terminal.
 
 use crate::Failure;
 use crate::progress::{Progress, ProgressForm};
@@ -65,7 +65,7 @@ impl Environment {
         &self.command
     }
 
-    /// Where the numbers of `seed` come from.
+    /// The seed, the revision and the command that numbers of `seed` come from.
     #[must_use]
     pub fn provenance(&self, seed: u64) -> Provenance {
         let revision = self.host.revision.to_owned();

@@ -69,7 +69,7 @@ impl Prepared {
         &self.plan
     }
 
-    /// What is known of the profile.
+    /// The truth about the profile: its optical thickness.
     #[must_use]
     pub fn truth(&self) -> &Truth {
         &self.truth
@@ -119,14 +119,14 @@ pub fn draw(
     measure(&*estimator.trial, draws, &place, advance)
 }
 
-/// What was measured against what is known.
+/// Comparison of a measurement with the reference.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The unit of both: T where that can be divided by.
     pub unit: Unit,
     /// The closed moments of one estimate.
     pub closed: ClosedMoments,
-    /// Whether mean and variance agree with them, at the false alarm that was asked for.
+    /// Verdict on mean and variance, at the false alarm that was asked for.
     pub verdict: Verdict,
 }
 
@@ -240,7 +240,7 @@ fn closed_moments(prediction: &Prediction, mean: f64) -> ClosedMoments {
     ClosedMoments::from_central(mean, &central)
 }
 
-/// How the reference is known, in words.
+/// Method by which the reference is known, in words.
 fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> String {
     let thickness = match (truth.method, &truth.doubt) {
         (_, Some((doubt, _))) => &format!("adaptive Gauss-Kronrod quadrature (not certified: {doubt})"),

@@ -20,14 +20,14 @@ use std::time::Duration;
 /// The time that work has to notice a request, unless it stops gently.
 pub const GRACE: Duration = Duration::from_secs(2);
 
-/// How often a removal is tried while another thread may still be creating files in the same folder.
+/// Number of attempts at a removal while another thread may still be creating files in the same folder.
 const ATTEMPTS: usize = 100;
 
 /// Signals so far.
 static REQUESTS: AtomicUsize = AtomicUsize::new(0);
 /// Pieces of work that stop gently.
 static GENTLE: AtomicUsize = AtomicUsize::new(0);
-/// Whether the end has begun.
+/// True once the end has begun.
 static ENDING: AtomicBool = AtomicBool::new(false);
 static TEMPORARY: Mutex<Vec<Temporary>> = Mutex::new(Vec::new());
 
@@ -76,7 +76,7 @@ fn ignored(status: &str) -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// What a signal does.
+/// Handles a signal.
 fn request() {
     if REQUESTS.fetch_add(1, Ordering::SeqCst) > 0 {
         end_at_once();
@@ -94,7 +94,7 @@ fn request() {
     }
 }
 
-/// Whether the process ends by who asks this first: it tells that it was interrupted, nobody else does.
+/// True for the caller that asks first, by whom the process ends: it tells that it was interrupted, nobody else does.
 pub(crate) fn ends_here() -> bool {
     !ENDING.swap(true, Ordering::SeqCst)
 }
@@ -121,7 +121,7 @@ fn tell(what: &str) {
     let _ = writeln!(stderr, "{gap}{what}");
 }
 
-/// Whether to go on.
+/// Checks that work may go on.
 ///
 /// # Errors
 /// [`Failure::Interrupted`] after a signal, unless something stops gently.
@@ -144,7 +144,7 @@ pub fn stop_gently() -> GentleStop {
 pub struct GentleStop(());
 
 impl GentleStop {
-    /// Whether an interrupt asked to stop.
+    /// True if an interrupt asked to stop.
     #[must_use]
     pub fn is_requested(&self) -> bool {
         REQUESTS.load(Ordering::Relaxed) > 0

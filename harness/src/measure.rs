@@ -9,7 +9,7 @@ use fairflight_sources::Seeded;
 use fairflight_stats::Moments;
 use rayon::prelude::*;
 
-/// What was measured of one estimator on one profile.
+/// Measurement of one estimator on one profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Moments of the estimates.
@@ -38,16 +38,16 @@ struct Batch {
     negative: u64,
 }
 
-/// How much is drawn, and from which seed.
+/// Number of estimates to be drawn, and the seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Draws {
     /// The number of estimates.
     pub samples: u64,
     /// The seed of their variates.
     pub seed: u64,
-    /// Of how many, in whole batches, the look-ups are counted.
+    /// Estimates, in whole batches, whose look-ups are counted.
     pub counted: u64,
-    /// Whether each estimate may depend on those before it: then there is one thread.
+    /// True if each estimate may depend on those before it: then there is one thread.
     pub sequential: bool,
 }
 

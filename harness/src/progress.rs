@@ -53,7 +53,7 @@ impl Progress {
         Self(Told::Lines(Mutex::new(lines)))
     }
 
-    /// So many more steps are done.
+    /// Adds so many steps to those that are done.
     pub fn inc(&self, steps: u64) {
         match &self.0 {
             Told::Nowhere => {}

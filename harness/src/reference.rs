@@ -17,7 +17,7 @@ pub struct Truth {
     pub thickness_error: f64,
     /// Why no bound of the error is proved, and what the optical thickness is proved not to leave; `None` for what is certified.
     pub doubt: Option<(Doubt, (f64, f64))>,
-    /// How it is known.
+    /// Method by which the optical thickness is known.
     pub method: ThicknessMethod,
     /// Facts about the profile.
     pub knowledge: Knowledge,
@@ -32,7 +32,7 @@ impl Truth {
         (-self.optical_thickness).exp()
     }
 
-    /// Whether the error of the transmittance is proved, in the unit of a verdict.
+    /// Certainty of the transmittance, in the unit of a verdict: proved, or estimated.
     #[must_use]
     pub fn certainty(&self, unit: Unit) -> Certainty {
         match self.doubt {
@@ -133,7 +133,7 @@ pub fn explain(profile: &AnyProfile, estimator: &Prepared, truth: &Truth, violat
     estimator.objection(&place, s, sigma_t)
 }
 
-/// What is known of an estimator on a profile.
+/// Law of one estimate on a profile, and the range of σ_t that was met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// The law of one estimate, in units of T.

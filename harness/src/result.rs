@@ -1,4 +1,4 @@
-//! What comes out of an experiment: the struct that every writer reads.
+//! Result of an experiment: the struct that every writer reads.
 
 use fairflight_stats::Verdict;
 use serde::{Serialize, Serializer};
@@ -24,17 +24,17 @@ pub struct SweepPoint<R> {
 /// The result of one experiment, in the form of the published spec.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExperimentResult {
-    /// What was measured.
+    /// The measured moments.
     pub estimate: Estimate,
-    /// What is known.
+    /// The truth, and the closed form of the moments.
     pub reference: ReferenceResult,
-    /// What it cost.
+    /// The cost of the measurement.
     pub cost: Cost,
     /// 1 / (mean squared error · cost).
     pub efficiency: Efficiency,
-    /// Whether what was measured agrees with what is known.
+    /// The verdict: whether the measurement agrees with the reference.
     pub verdict: VerdictResult,
-    /// Where the numbers come from.
+    /// The seed, the revision and the command that the numbers come from.
     pub provenance: Provenance,
 }
 
@@ -76,11 +76,11 @@ pub struct ReferenceResult {
     /// Expected look-ups of one estimate, preparation included.
     #[serde(serialize_with = "number")]
     pub lookups_per_sample: Option<f64>,
-    /// How all of these are known.
+    /// Method by which all of these are known.
     pub method: String,
 }
 
-/// What the measurement cost.
+/// Cost of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
     /// Number of estimates.
@@ -136,7 +136,7 @@ impl From<Verdict> for VerdictResult {
     }
 }
 
-/// Where a number comes from.
+/// Seed, revision and command that a number comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Provenance {
     /// The seed of the variates.

@@ -1,6 +1,6 @@
 //! Tables of text.
 
-/// So many digits of a number; as a power of ten where it is far from 1.
+/// Text of a number to so many digits; as a power of ten where it is far from 1.
 pub(crate) fn digits(value: f64, count: i32) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
         let after = (count - 1).max(0) as usize;

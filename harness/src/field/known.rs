@@ -1,4 +1,4 @@
-//! What the harness asks of a field, and what it knows of it.
+//! Demands of the harness on a field, and its knowledge of it.
 
 use fairflight_media::{Breakpoints, Certificate, Extinction, Majorant, Minorant, OpticalThickness};
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub trait Field: Extinction + Breakpoints + Copy + Sync {}
 impl<F: Extinction + Breakpoints + Copy + Sync> Field for F {}
 
-/// How an optical thickness is known.
+/// Method by which an optical thickness is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThicknessMethod {
     /// Exact to rounding.
@@ -23,7 +23,7 @@ pub enum ThicknessMethod {
 pub struct Knowledge {
     /// ∫ σ_t, where a closed form exists.
     pub optical_thickness: Option<f64>,
-    /// How.
+    /// Method by which the optical thickness is known.
     pub method: ThicknessMethod,
     /// A value that σ_t nowhere exceeds; a look-up above it refutes whoever declared it.
     pub upper_bound: Option<f64>,
@@ -38,7 +38,7 @@ pub trait KnownField: Extinction + Breakpoints + std::fmt::Debug + Send + Sync {
     /// Facts about the profile.
     fn knowledge(&self) -> Knowledge;
 
-    /// What is proved of the optical thickness where it has no closed form.
+    /// The certificate of the optical thickness where it has no closed form.
     fn certificate(&self) -> Option<&Certificate> {
         None
     }

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug, Default)]
 pub struct MediumLibrary {
     volumes: Mutex<HashMap<VolumeKey, Volume>>,
-    /// Of each medium, by the number of boxes along its longest edge.
+    /// Grids of bounds of each medium, by the number of boxes along its longest edge.
     grids: Mutex<Vec<(MediumSpec, u32, Arc<BoundGrid>)>>,
 }
 

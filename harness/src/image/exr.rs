@@ -30,7 +30,7 @@ pub(super) fn encode(image: &Image) -> Result<Vec<u8>, String> {
     Ok(bytes.into_inner())
 }
 
-/// Of the compressions that the reader knows, deflate shrinks the most: 1032 bytes to one.
+/// Bytes per compressed byte, at most: of the compressions that the reader knows, deflate shrinks the most.
 const MOST_EXPANSION: u64 = 1032;
 
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {

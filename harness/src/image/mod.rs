@@ -36,7 +36,7 @@ pub enum ImageError {
     Malformed {
         /// The format.
         format: &'static str,
-        /// What was found.
+        /// The reason, in words.
         reason: String,
     },
     /// Fewer or more bytes than the header promises.
@@ -68,7 +68,7 @@ pub enum ImageError {
         column: usize,
         /// From the top.
         row: usize,
-        /// What was found.
+        /// The value that was found.
         value: f32,
     },
 }

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 pub struct Key {
     /// The name.
     pub name: &'static str,
-    /// Whether it may be left out.
+    /// True if the key may be left out.
     pub optional: bool,
     /// The quantity, with its unit.
     pub about: &'static str,

@@ -73,19 +73,19 @@ impl<'a> Node<'a> {
         })
     }
 
-    /// Whether this value is an object.
+    /// True if this value is an object.
     #[must_use]
     pub fn is_object(&self) -> bool {
         self.value.is_object()
     }
 
-    /// Whether this value is null.
+    /// True if this value is null.
     #[must_use]
     pub fn is_null(&self) -> bool {
         self.value.is_null()
     }
 
-    /// Whether this value is a list.
+    /// True if this value is a list.
     #[must_use]
     pub fn is_list(&self) -> bool {
         self.value.is_array()
@@ -228,7 +228,7 @@ impl<'a> Node<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// Whether the object has a key.
+    /// True if the object has a key.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.map.contains_key(key)

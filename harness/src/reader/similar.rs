@@ -32,7 +32,7 @@ pub(crate) fn meant<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Str
 
 /// One of `names` that may be the word with a slip of the keyboard.
 pub(super) fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    /// Of one slip in a short word, two in a long one.
+    /// Likeness from which on a word is taken for another: that of one slip in a short word, two in a long one.
     const ALIKE: f64 = 0.75;
     let likeness = |name: &str| strsim::normalized_damerau_levenshtein(word, name);
     let best = names.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;

@@ -3,7 +3,7 @@
 use fairflight_harness::{Host, run};
 use serde_json::Value;
 
-/// What a run of the program left behind.
+/// Exit code and output of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub(crate) code: i32,

@@ -23,10 +23,10 @@ pub(crate) struct LawfulRun {
     pub(crate) family: &'static str,
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Debug)]
 pub(crate) struct Outcome {
-    /// Whether the estimator is a labelled biased baseline, of which nothing is asked.
+    /// True if the estimator is a labelled biased baseline, of which nothing is asked.
     pub(crate) is_biased: bool,
     /// The verdict on the run.
     pub(crate) right: Verdict,
@@ -122,7 +122,7 @@ pub(crate) fn lawful_run(index: u64) -> LawfulRun {
 
 const LEAST_SAMPLES: f64 = 1000.0;
 const MOST_SAMPLES: f64 = 200_000.0;
-/// Of one run.
+/// Greatest number of look-ups of one run.
 const MOST_LOOKUPS: f64 = 4e6;
 
 impl Draw {

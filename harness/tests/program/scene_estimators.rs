@@ -186,7 +186,7 @@ fn pictures_agree_with_regular_tracking_or_the_refusal_says_why() {
     }
 }
 
-/// Those that learn from rays of the scene, and those that are bounded by a grid.
+/// Estimators that learn from rays of the scene, and those that are bounded by a grid.
 fn prepared() -> [Value; 4] {
     [
         json!({ "kind": "hybrid" }),

@@ -15,7 +15,7 @@ fn repository() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Whether values keep the schema; the reason for each that does not.
+/// Validates values against the schema; the reason for each that does not keep it.
 fn judge(values: &[(String, Value)]) -> Vec<(String, Result<(), String>)> {
     let (mut schemas, mut compiler) = (Schemas::new(), Compiler::new());
     compiler.add_resource("schema.json", schema()).expect("the schema is one");

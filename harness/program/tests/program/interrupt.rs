@@ -182,7 +182,7 @@ fn more_than_an_hour_is_said_before_it_begins() {
     assert_eq!(child.wait().expect("an end").code(), Some(130));
 }
 
-/// What is ignored when the program starts: hang-ups under `nohup`, the interrupts of the keyboard in the
+/// Signals that are ignored when the program starts: hang-ups under `nohup`, the interrupts of the keyboard in the
 /// background of a shell.
 #[cfg(target_os = "linux")]
 #[test]
