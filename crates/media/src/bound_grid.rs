@@ -60,7 +60,7 @@ impl BoundGrid {
         Ok(Self { bounds: medium.bounds_in_all(&boxes), boxes, outside, lookups })
     }
 
-    /// With other bounds outside of the box: 0 and the background, for voxels of which the box holds all that differ from it.
+    /// The grid with other bounds outside of the box: 0 and the background, for voxels of which the box holds all that differ from it.
     #[must_use]
     pub fn with_outside(self, minorant: f64, majorant: f64) -> Self {
         Self { outside: (minorant, majorant), ..self }
@@ -179,7 +179,7 @@ struct Axis<'a> {
 }
 
 impl<'a> Axis<'a> {
-    /// At the distance `s`, in the box.
+    /// The place at the distance `s`, in the box.
     fn new(boxes: &'a Boxes, axis: usize, local: &Line, s: f64) -> Self {
         let (origin, direction) = (local.origin[axis], local.direction[axis]);
         let n = boxes.resolution()[axis];

@@ -12,12 +12,12 @@ fn voxels() -> Voxels<Dense> {
     Voxels::new(Dense::new(), DAffine3::IDENTITY, 2.0).unwrap()
 }
 
-/// From one voxel before the first to one behind the last: beyond there is background alone.
+/// Corners of the grid, from one voxel before the first to one behind the last: beyond there is background alone.
 fn whole() -> (DVec3, DVec3) {
     (DVec3::NEG_ONE, DVec3::from_array(SIZE.map(|n| n as f64)))
 }
 
-/// Every look-up is within its cell, and the cells are lawful.
+/// Checks that every look-up is within its cell, and that the cells are lawful.
 fn check<M: BoxBounds>(
     medium: &M,
     grid: &BoundGrid,

@@ -1,6 +1,6 @@
 //! Errors of the constructors of fields.
 
-/// Why a field cannot be built. Each variant names the inequality that was violated.
+/// Error of a field that cannot be built. Each variant names the inequality that was violated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FieldError {
     /// A number is NaN or infinite.
@@ -8,7 +8,7 @@ pub enum FieldError {
     NotFinite {
         /// The parameter, with its index in a list.
         what: String,
-        /// Its value.
+        /// The value given.
         found: f64,
     },
     /// A number is below its least allowed value.
@@ -16,9 +16,9 @@ pub enum FieldError {
     TooSmall {
         /// The parameter.
         what: &'static str,
-        /// Its least allowed value.
+        /// The least allowed value.
         least: f64,
-        /// Its value.
+        /// The value given.
         found: f64,
     },
     /// A list has too few entries.
@@ -28,7 +28,7 @@ pub enum FieldError {
         what: &'static str,
         /// The least number of entries.
         least: usize,
-        /// Their number.
+        /// The number given.
         found: usize,
     },
     /// A list would have too many entries.
@@ -38,7 +38,7 @@ pub enum FieldError {
         what: &'static str,
         /// The greatest number of entries.
         most: usize,
-        /// Their number, or the greatest that can be counted.
+        /// The number given, or the greatest that can be counted.
         found: usize,
     },
     /// Edges or positions do not increase.
@@ -78,7 +78,7 @@ pub enum FieldError {
         what: &'static str,
         /// The number of entries that the other list asks for.
         expected: usize,
-        /// Their number.
+        /// The number given.
         found: usize,
     },
     /// Profiles that belong together differ in their length.

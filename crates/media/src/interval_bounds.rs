@@ -57,7 +57,7 @@ impl IntervalBounds for PiecewiseLinear {
     }
 }
 
-/// In the box around the stretch: not tight for a ray across the axes, and never wrong.
+/// Bounds in the box around the stretch: not tight for a ray across the axes, and never wrong.
 impl<M: BoxBounds> IntervalBounds for Ray<M> {
     fn bounds_between(&self, from: f64, to: f64) -> (f64, f64) {
         /// A point on the line is off by a few roundings of its coordinates, and of the way to it.

@@ -58,7 +58,7 @@ const MOST_BOXES: usize = 1 << 30;
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
 impl Boxes {
-    /// Between two corners, of which the second is greater in each coordinate; `resolution` boxes along each axis.
+    /// The boxes between two corners, of which the second is greater in each coordinate; `resolution` boxes along each axis.
     pub(crate) fn new(min: DVec3, max: DVec3, resolution: [usize; 3]) -> Self {
         debug_assert!(min.cmplt(max).all() && resolution.iter().all(|&n| n > 0), "no boxes");
         let slack = ROUNDINGS * min.abs().max(max.abs()).max_element();
@@ -93,7 +93,7 @@ impl Boxes {
         Ok(Self { slack, ..boxes })
     }
 
-    /// Between two corners.
+    /// The boxes between two corners.
     ///
     /// # Errors
     /// If a corner is not finite, the box is flat, a resolution is 0, or their product beyond 2³⁰.

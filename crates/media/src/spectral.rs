@@ -95,7 +95,7 @@ pub struct Profiles<F, const N: usize> {
 }
 
 impl<F: Extinction, const N: usize> Profiles<F, N> {
-    /// One of the `profiles` for each wavelength.
+    /// The spectrum with one of the `profiles` for each wavelength.
     ///
     /// # Errors
     /// If there is none, or they are not all of one length.

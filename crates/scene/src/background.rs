@@ -6,9 +6,9 @@ use glam::DVec3;
 /// The radiance that a ray meets when it leaves everything.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Background<C> {
-    /// The same from everywhere \[radiance\].
+    /// Radiance that is the same from every direction.
     pub constant: C,
-    /// On top of it.
+    /// Environment maps on top of it.
     pub maps: Vec<EnvironmentMap<C>>,
 }
 

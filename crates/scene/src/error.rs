@@ -2,7 +2,7 @@
 
 use crate::Spectrum;
 
-/// Why a part of a scene cannot be built. Each variant names the inequality that was violated.
+/// Error of a part of a scene that cannot be built. Each variant names the inequality that was violated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// A number is NaN or infinite.
@@ -16,7 +16,7 @@ pub enum SceneError {
     Negative {
         /// The parameter.
         what: &'static str,
-        /// Its value.
+        /// The value given.
         found: f64,
     },
     /// A number is negative or zero.
@@ -24,7 +24,7 @@ pub enum SceneError {
     NotPositive {
         /// The parameter.
         what: &'static str,
-        /// Its value.
+        /// The value given.
         found: f64,
     },
     /// A direction of length zero, or one that another parameter makes useless.
@@ -47,7 +47,7 @@ pub enum SceneError {
         /// The parameter.
         what: &'static str,
     },
-    /// As many pixels as width times height says.
+    /// A number of pixels that is not width times height.
     #[error("a map of {width} x {height} needs {} pixels, found {found}", width * height)]
     PixelCount {
         /// Pixels in a row.

@@ -46,7 +46,7 @@ pub trait Spectrum:
     /// Red, green and blue; three times the same if gray.
     fn rgb(self) -> [f64; 3];
 
-    /// From red, green and blue; a gray spectrum takes their mean.
+    /// The spectrum of red, green and blue; a gray one takes their mean.
     fn from_rgb(rgb: [f64; 3]) -> Self;
 }
 

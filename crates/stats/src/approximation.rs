@@ -1,4 +1,4 @@
-//! When the mean of N values may be taken as normal out to the z at which a test decides.
+//! Conditions under which the mean of N values may be taken as normal out to the z at which a test decides.
 //!
 //! **Exact standard error.** For a law with skewness gamma and excess kurtosis kappa, Cramér's theorem (Petrov, "Sums of
 //! Independent Random Variables" (1975), chapter VIII) multiplies the normal tail beyond z by
@@ -82,7 +82,7 @@ impl NormalApproximation {
             .max(or_infinite(excess_kurtosis.abs() / self.excess_kurtosis_limit()))
     }
 
-    /// As [`Self::samples_needed`] for a z with the sample's own standard error, from the shape of the sample.
+    /// Number of samples as [`Self::samples_needed`] for a z with the sample's own standard error, from the shape of the sample.
     #[must_use]
     pub fn studentised_samples_needed(&self, sample_skewness: f64, sample_excess_kurtosis: f64) -> f64 {
         let skewness = SAMPLE_SHAPE_FACTOR * sample_skewness;

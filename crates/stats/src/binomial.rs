@@ -18,7 +18,7 @@ pub struct Binomial {
     p: f64,
 }
 
-/// Why a [`Binomial`] was refused.
+/// Error of a [`Binomial`] that was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BinomialError {
     /// p is below zero or NaN.

@@ -53,7 +53,7 @@ impl Binomial {
 /// As f64, since N p matters alone where p is small, and N may exceed every integer type.
 #[must_use]
 pub fn trials_needed(p: f64, level: f64, power: f64, deviation: f64) -> f64 {
-    /// Below it the law is that of Poisson with mean N p, to a relative error of this order.
+    /// Probability below which the law is that of Poisson with mean N p, to a relative error of this order.
     const RARE: f64 = 1e-6;
     if p < RARE {
         return if p > 0.0 { trials_needed(RARE, level, power, deviation) * RARE / p } else { f64::INFINITY };

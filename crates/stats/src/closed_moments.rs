@@ -49,7 +49,7 @@ impl ClosedMoments {
         }
     }
 
-    /// From the mean and mu_2, mu_3, ... in order; missing ones are not known, those beyond mu_8 are ignored.
+    /// The moments by the mean and mu_2, mu_3, ... in order; missing ones are not known, those beyond mu_8 are ignored.
     #[must_use]
     pub fn from_central(mean: f64, central: &[Option<f64>]) -> Self {
         let moment = |k: usize| central.get(k - 2).copied().flatten().filter(|value| !value.is_nan());
@@ -65,7 +65,7 @@ impl ClosedMoments {
         }
     }
 
-    /// From the raw moments E\[X\], E\[X^2\], ... in order; NaN for an unknown one. An empty slice gives the mean NaN.
+    /// The moments by the raw moments E\[X\], E\[X^2\], ... in order; NaN for an unknown one. An empty slice gives the mean NaN.
     ///
     /// mu_k = sum over j of C(k,j) (-mean)^(k-j) E\[X^j\] cancels where the standard deviation is small against the mean:
     /// a result below the rounding of its terms is noise, and reported as not known.

@@ -1,4 +1,4 @@
-//! From a p-value and a power to a judgement of the mean.
+//! Judgement of the mean from a p-value and a power.
 
 use crate::policy::{MAX_DETECTABLE_RELATIVE_BIAS, Outcome};
 use crate::reference::Reference;

@@ -14,7 +14,7 @@ pub struct GoodnessOfFit {
     /// The smallest deviation that would have been rejected with probability 0.99, in the unit that the test states;
     /// `None` without a test.
     pub detectable: Option<f64>,
-    /// Why, in words.
+    /// Reason, in words.
     pub reason: String,
 }
 

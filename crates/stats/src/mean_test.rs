@@ -192,7 +192,7 @@ impl Bounds {
         self.0.p_value(((mean - reference.mean).abs() - reference.allowance()).max(0.0), n)
     }
 
-    /// Its power, where the mean was not rejected.
+    /// Power of the inequality, where the mean was not rejected.
     fn evidence(&self, reference: &Reference, mean: f64, n: f64, level: f64) -> MeanJudgement {
         let detectable = |n: f64| relative(bernstein_reach(&self.0, reference, level, n), reference);
         let enough = |n: f64| detectable(n).is_some_and(|d| d < MAX_DETECTABLE_RELATIVE_BIAS);

@@ -46,7 +46,7 @@ pub struct Verdict {
     pub detectable_relative_bias: Option<f64>,
     /// True if mean and variance agree with the reference; `None` = not testable at this N.
     pub sound: Option<bool>,
-    /// Why, in words.
+    /// Reason, in words.
     pub reason: String,
     /// N that would make the mean testable where `sound` is `None`, possibly infinite; `None` if that is unknown.
     pub samples_needed: Option<f64>,

@@ -19,7 +19,7 @@ const VERSIONS: std::ops::RangeInclusive<u8> = 1..=2;
 const LARGEST_SPLIT_ELEMENT: usize = 16;
 const FEWEST_SPLIT_ELEMENTS: usize = 128;
 
-/// Why a chunk could not be decoded.
+/// Error of a chunk that could not be decoded.
 #[derive(Debug, PartialEq)]
 pub(crate) enum ChunkError {
     /// Encoded in a way that this decoder leaves out.

@@ -1,4 +1,4 @@
-//! Why a file was refused: one variant per reason, each with a one-line message for the user who chose the file.
+//! Errors of files that are refused: one variant per reason, each with a one-line message for the user who chose the file.
 
 use thiserror::Error;
 
@@ -50,7 +50,7 @@ pub enum VdbError {
     NotAVolume {
         /// The grid's name.
         grid: String,
-        /// Its class as the file spells it.
+        /// The grid's class as the file spells it.
         class: String,
     },
     /// The grid asked for has other values than floats, or another tree than the usual 5-4-3.
@@ -58,7 +58,7 @@ pub enum VdbError {
     WrongType {
         /// The grid's name.
         grid: String,
-        /// Its tree type as the file spells it.
+        /// The grid's tree type as the file spells it.
         found: String,
     },
     /// The values are stored by a codec that this reader does not have.
@@ -100,7 +100,7 @@ pub enum VdbError {
     NonFinite {
         /// The first such voxel in tree order, or the lowest voxel of the tile.
         index: [i32; 3],
-        /// Its value.
+        /// The value of that voxel.
         value: f32,
     },
     /// Reading would need more memory than a file of this size can justify, or a count does not fit its type.

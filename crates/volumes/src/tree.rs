@@ -35,11 +35,11 @@ pub(crate) enum Located {
 /// The inner nodes of one level.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Level<const WORDS: usize> {
-    /// For each node its slots: the index of a child, or the bits of a tile's value.
+    /// Slots of each node: the index of a child, or the bits of a tile's value.
     pub(crate) slots: Vec<u32>,
-    /// For each node the slots that are children.
+    /// Slots of each node that are children.
     pub(crate) children: Vec<[u64; WORDS]>,
-    /// For each node the slots that are active tiles.
+    /// Slots of each node that are active tiles.
     pub(crate) active: Vec<[u64; WORDS]>,
 }
 
@@ -68,9 +68,9 @@ pub(crate) struct Tree {
     pub(crate) root: Vec<([i32; 3], Slot)>,
     pub(crate) upper: Level<UPPER_WORDS>,
     pub(crate) lower: Level<LOWER_WORDS>,
-    /// For each leaf its active voxels.
+    /// Active voxels of each leaf.
     pub(crate) leaf_active: Vec<[u64; LEAF_WORDS]>,
-    /// For each leaf its voxels, z fastest.
+    /// Voxels of each leaf, z fastest.
     pub(crate) leaf_values: Vec<[f32; LEAF_SIZE]>,
 }
 

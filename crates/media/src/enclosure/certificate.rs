@@ -32,7 +32,7 @@ pub struct Certificate {
     doubt: Option<Doubt>,
 }
 
-/// Why the thickness of a profile is not certified.
+/// Reason why the thickness of a profile is not certified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Doubt {
     /// The budget was spent before the bounds met.
@@ -230,7 +230,7 @@ impl Certificate {
         }
     }
 
-    /// Why the thickness is not certified; `None` where it is.
+    /// Reason why the thickness is not certified; `None` where it is.
     #[must_use]
     pub fn doubt(&self) -> Option<Doubt> {
         self.doubt

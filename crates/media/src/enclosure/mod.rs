@@ -36,7 +36,7 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// From the range of σ_t alone: the middle of it times the width.
+    /// Encloses by the range of σ_t alone: the integral is the middle of it times the width.
     pub(crate) fn from_range(from: f64, to: f64, (low, high): (f64, f64)) -> Self {
         let width = to - from;
         let middle = 0.5 * low + 0.5 * high;

@@ -88,8 +88,8 @@ impl MediumBreakpoints for ExpressionMedium {
     }
 }
 
-/// By interval arithmetic in the box cut into smaller ones, until the bounds are near what is attained at their centres; infinite where
-/// none is proved, or where the formula may have no value.
+/// Bounds by interval arithmetic in the box cut into smaller ones, until the bounds are near what is attained at their centres; infinite
+/// where none is proved, or where the formula may have no value.
 impl BoxBounds for ExpressionMedium {
     fn bounds_in(&self, min: DVec3, max: DVec3) -> (f64, f64) {
         /// Boxes that one range may take: 4 × 4 × 4.

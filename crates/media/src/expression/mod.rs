@@ -38,7 +38,7 @@ pub struct ExpressionError {
     pub message: String,
 }
 
-/// Why a field cannot be built from a formula.
+/// Error of a field that cannot be built from a formula.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExpressionFieldError {
     /// The formula is none.

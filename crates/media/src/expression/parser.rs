@@ -1,4 +1,4 @@
-//! From the text of a formula to its program.
+//! Parser from the text of a formula to its program.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -107,7 +107,7 @@ impl Parser<'_> {
         }
     }
 
-    /// One or more sums in parentheses, separated by commas; their number.
+    /// Parses one or more sums in parentheses, separated by commas; returns their number.
     fn parenthesis(&mut self) -> Result<usize, ExpressionError> {
         let opened = self.at;
         self.at += 1;

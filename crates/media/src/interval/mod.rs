@@ -22,10 +22,10 @@ pub(crate) struct Interval {
 /// 2⁻⁵²: an operation in doubles is off by half of this relative to its result.
 const EPSILON: f64 = f64::EPSILON;
 
-/// More than an operation that underflows can be off by.
+/// Bound of the error of an operation that underflows.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
-/// Not below any number whose double is `x`, up to `roundings` of 2⁻⁵² each.
+/// A double not below any number whose double is `x`, up to `roundings` of 2⁻⁵² each.
 fn up(x: f64, roundings: f64) -> f64 {
     x + (x.abs() * (roundings * EPSILON) + UNDERFLOW)
 }
@@ -54,7 +54,7 @@ pub(crate) fn sum_up(a: f64, b: f64) -> f64 {
 /// Numbers on both sides of a product, or the product itself where it is exact (Veltkamp's splitting, Dekker's product).
 fn product(a: f64, b: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0;
-    /// Below, the product of the lower halves may underflow.
+    /// Size of a product below which that of the lower halves may underflow.
     const EXACT_FROM: f64 = 1e-200;
     let split = |x: f64| {
         let scaled = SPLITTER * x;

@@ -151,7 +151,7 @@ impl Series {
         if k < self.length { (self.mid[k], self.radius[k]) } else { (0.0, 0.0) }
     }
 
-    /// As a function of t, from the middles of the coefficients; not proved.
+    /// Value and slope at t, from the middles of the coefficients; not proved.
     fn at_middle(&self, t: f64) -> (f64, f64) {
         let (mut value, mut slope) = (0.0, 0.0);
         for k in (0..self.length).rev() {

@@ -2,7 +2,7 @@
 
 use crate::FieldError;
 
-/// Why a phase function cannot be built. Each variant names the inequality that was violated.
+/// Error of a phase function that cannot be built. Each variant names the inequality that was violated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PhaseError {
     /// A parameter of anisotropy is -1 or less, or NaN.
@@ -10,7 +10,7 @@ pub enum PhaseError {
     NotAboveMinusOne {
         /// The parameter.
         what: &'static str,
-        /// Its value.
+        /// The value given.
         found: f64,
     },
     /// A parameter of anisotropy is 1 or more.
@@ -18,7 +18,7 @@ pub enum PhaseError {
     NotBelowOne {
         /// The parameter.
         what: &'static str,
-        /// Its value.
+        /// The value given.
         found: f64,
     },
     /// The cosines of a table do not reach from -1 to 1.

@@ -136,8 +136,8 @@ impl<T> Panels<T> {
         })
     }
 
-    /// As [`integrate`](Self::integrate), by parts: those between 0, the `ends` in increasing order and infinity. The integrand is told
-    /// the index of its part. The value of each part, and the total.
+    /// Integrates as [`integrate`](Self::integrate), by parts: those between 0, the `ends` in increasing order and infinity. The integrand
+    /// is told the index of its part. The value of each part, and the total.
     pub(super) fn integrate_parts<const K: usize>(
         &mut self,
         sample: &dyn Fn(f64) -> T,

@@ -74,7 +74,7 @@ fn zeros_of(expansion: &Expansion) -> Vec<f64> {
 
 /// Place of the minimum of a function with one minimum between `a` and `b`, to where rounding hides it.
 fn least(function: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    /// Each keeps two thirds: 1e-9 of the bracket, to the square of which the minimum is flat.
+    /// Number of steps, each of which keeps two thirds: 1e-9 of the bracket, to the square of which the minimum is flat.
     const STEPS: usize = 50;
     for _ in 0..STEPS {
         let (left, right) = (a + (b - a) / 3.0, b - (b - a) / 3.0);

@@ -11,9 +11,9 @@ use glam::DVec3;
 /// to be taken for zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// From the start, of unit direction.
+    /// Line from the start, of unit direction.
     pub line: Line,
-    /// To the end \[length\]; may be infinite.
+    /// Distance to the end \[length\]; may be infinite.
     pub length: f64,
     /// The surface that it starts on.
     pub from: Option<usize>,
@@ -24,7 +24,7 @@ pub struct Segment {
 /// Intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<'s, C> {
-    /// From the start of the ray \[length\].
+    /// Distance from the start of the ray \[length\].
     pub distance: f64,
     /// The point.
     pub position: DVec3,
@@ -72,7 +72,7 @@ pub trait Geometry<C: Spectrum> {
     }
 }
 
-/// Nothing to meet.
+/// A scene without surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoSurfaces;
 

@@ -26,7 +26,7 @@ pub enum Material<C> {
 pub struct Surface<C> {
     /// Shape and place of the surface.
     pub shape: Shape,
-    /// Its reflection and refraction of light.
+    /// Reflection and refraction of light.
     pub material: Material<C>,
     /// The radiance that it emits from both sides into all directions.
     pub emission: C,

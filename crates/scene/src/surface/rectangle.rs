@@ -15,7 +15,7 @@ pub struct Rectangle {
     /// Normal of the outer side, of unit length.
     pub(super) normal: DVec3,
     pub(super) area: f64,
-    /// In the plane, with dual_u · edge_u = 1 and dual_u · edge_v = 0: the coordinate u of a point is dual_u · (point − corner).
+    /// Vector in the plane, with dual_u · edge_u = 1 and dual_u · edge_v = 0: the coordinate u of a point is dual_u · (point − corner).
     dual_u: DVec3,
     dual_v: DVec3,
 }

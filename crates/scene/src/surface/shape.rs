@@ -27,7 +27,7 @@ pub struct AreaSample {
 pub struct TowardsSample {
     /// Direction of unit length.
     pub direction: DVec3,
-    /// To the surface along it \[length\].
+    /// Distance to the surface along it \[length\].
     pub distance: f64,
     /// The density of the direction \[1/sr\], positive.
     pub pdf_solid_angle: f64,

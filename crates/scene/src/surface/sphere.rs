@@ -77,7 +77,7 @@ impl Sphere {
         point.distance(self.center) < self.radius
     }
 
-    /// From the surface, not from the ball.
+    /// Distance of `point` from the surface, not from the ball \[length\].
     pub(super) fn distance_to(&self, point: DVec3) -> f64 {
         (point.distance(self.center) - self.radius).abs()
     }

@@ -16,7 +16,7 @@ pub struct Surfaces<C> {
 }
 
 impl<C: Spectrum> Surfaces<C> {
-    /// These surfaces, in this order.
+    /// The surfaces of a scene, in this order.
     #[must_use]
     pub fn new(all: Vec<Surface<C>>) -> Self {
         let emitters = (0..all.len()).filter(|&i| all[i].emits()).collect();

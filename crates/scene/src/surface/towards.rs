@@ -28,7 +28,7 @@ impl Rectangle {
 }
 
 impl Sphere {
-    /// From outside uniform in the cone of directions that meet the sphere, to the nearer crossing: its density is the greatest
+    /// Draws, from outside, uniformly in the cone of directions that meet the sphere, to the nearer crossing: its density is the greatest
     /// that is constant. From inside uniform in all directions: by area, the few directions that leave over a near part of the sphere
     /// would have weights without bound as the point comes near it. `None` on the sphere itself, at the distance `radius` to
     /// rounding, and where the cone is too narrow for its density to be a number (radius/distance below 1e-154).

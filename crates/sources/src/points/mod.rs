@@ -34,7 +34,7 @@ pub use sobol::Sobol;
 
 use crate::{Seeded, UniformSource, derive_seed};
 
-/// Why a point set cannot be made.
+/// Error of a point set that cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointSetError {
     /// A set of no points.
