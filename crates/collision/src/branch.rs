@@ -7,7 +7,7 @@
 pub struct Branch {
     /// The probability that the particle exists.
     pub probability: f64,
-    /// Its energy as a multiple of the incident one; of either sign.
+    /// Energy of the particle as a multiple of the incident one; of either sign.
     pub energy: f64,
     /// 1 − probability, to full relative precision.
     pub(crate) absence: f64,

@@ -39,11 +39,11 @@ pub trait SingleOutcome: CollisionModel {
 /// The one particle that leaves a collision, with its energy as a multiple of the incident one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// It takes a new direction.
+    /// The particle takes a new direction, with this energy.
     Scattered(f64),
-    /// It goes straight on.
+    /// The particle goes straight on, with this energy.
     Transmitted(f64),
-    /// None does.
+    /// No particle survives.
     Absorbed,
 }
 

@@ -62,7 +62,7 @@ impl<'m> Compensation<'m> {
         (self.tried, self.inside)
     }
 
-    /// One compensation vertex of `y` connected with `which`, and those behind it.
+    /// Light by one compensation vertex of `y`, connected with `which`, and by those behind it.
     #[inline(never)]
     fn step<W: Types>(
         &mut self,
@@ -163,7 +163,7 @@ mod tests {
     use std::f64::consts::{FRAC_1_PI, PI};
 
     const EXACT: CompensationOptions = CompensationOptions::EXACT;
-    /// Straight up from the floor, and straight down from the ceiling.
+    /// Variates of the direction straight up from the floor, and straight down from the ceiling.
     const ACROSS: [f64; 2] = [0.0, 0.0];
 
     /// A floor at 0 and a ceiling at 1/2 (G = 4 straight across), a point light of irradiance 16 in the middle of both.

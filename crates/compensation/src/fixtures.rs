@@ -72,7 +72,7 @@ pub(crate) fn room(height: f64) -> Vec<Surface<f64>> {
     [0.0, height].map(|z| square(z, Material::Diffuse { reflectance: REFLECTANCE })).to_vec()
 }
 
-/// At the origin, facing up.
+/// A vertex of the floor at the origin, facing up.
 pub(crate) fn on_floor() -> Vertex {
     Vertex { position: DVec3::ZERO, lobe: Lobe::Diffuse { normal: DVec3::Z, surface: 0 } }
 }

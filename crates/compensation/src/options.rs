@@ -42,7 +42,7 @@ pub enum Visibility {
     /// Surfaces that come within the bounding region of the point, found once per point: what lies further away cannot matter, and nothing
     /// is lost.
     Local,
-    /// None from points of the medium: their vertices lie in the medium only, and may lie behind a surface. Biased by design near
+    /// No surface from points of the medium: their vertices lie in the medium only, and may lie behind a surface. Biased by design near
     /// surfaces. Points of surfaces see surfaces all the same, as in the paper's appendix.
     Ignored,
 }

@@ -77,7 +77,7 @@ impl Region {
     }
 }
 
-/// By a free flight, cut off where the region ends: what lies beyond counts for nothing.
+/// Places a vertex by a free flight, cut off where the region ends: what lies beyond counts for nothing.
 fn by_flight<W: Types>(
     segment: &Segment,
     hit: Option<&Hit<'_, W::Spectrum>>,
@@ -95,7 +95,7 @@ fn by_flight<W: Types>(
     }
 }
 
-/// As if the medium were homogeneous within the region (engelhardt-2013 eq. 4).
+/// Places a vertex as if the medium were homogeneous within the region (engelhardt-2013 eq. 4).
 ///
 /// With a surface at s < d the distance is drawn within d all the same, and one beyond the medium in front of the surface means the
 /// surface: with probability (e^{−σs} − e^{−σd})/(1 − e^{−σd}), not exp(−σs) as under a free flight. The paper's appendix never

@@ -18,7 +18,8 @@ pub struct TruncatedExponential {
     mass: f64,
 }
 
-/// Below this the law is uniform to the last digit, and products with variates (of 2⁻⁵³ and more) would lose theirs.
+/// Product of rate and length below which the law is uniform to the last digit, and products with variates (of 2⁻⁵³ and more) would
+/// lose theirs.
 const UNIFORM_BELOW: f64 = 1e-280;
 
 impl TruncatedExponential {

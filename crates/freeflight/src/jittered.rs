@@ -89,7 +89,7 @@ impl<F: Majorant> FreeFlight<F> for JitteredFlight {
 }
 
 impl<F: Majorant> ClosedForm<F> for JitteredFlight {
-    /// By strata, from the last to the first: with L look-ups in a stratum, A whether the flight ends there and N' look-ups behind
+    /// Moments by strata, from the last to the first: with L look-ups in a stratum, A whether the flight ends there and N' look-ups behind
     /// it, N = L + (1 − A) N', hence
     ///
     /// > E\[N^k\] = E\[L^k\] + Σ_{i<k} C(k, i) E\[L^i (1 − A)\] E\[N'^{k−i}\].

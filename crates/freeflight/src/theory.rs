@@ -46,7 +46,7 @@ pub fn lookups_of_a_walk<F: Extinction>(
     })
 }
 
-/// As [`lookups_of_a_walk`], with a further Poisson process whose first point ends the flight without a look-up; its rate is
+/// Moments as [`lookups_of_a_walk`], with a further Poisson process whose first point ends the flight without a look-up; its rate is
 /// the first of the three.
 pub(crate) fn lookups_of_a_race<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,

@@ -18,7 +18,7 @@ pub struct Grid {
     lowest: f64,
 }
 
-/// Why a grid cannot be built.
+/// Error of a grid that cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// A value that is no sampling extinction.
@@ -30,7 +30,7 @@ pub enum GridError {
         /// The value given.
         found: usize,
     },
-    /// As many values as cells.
+    /// A number of values that is not the number of cells.
     #[error("the grid needs {expected} values, found {found}")]
     Values {
         /// The number of cells.
@@ -68,7 +68,7 @@ impl Grid {
         Ok(Self { min, per_length, cells, sigma_samp, highest, lowest })
     }
 
-    /// In each cell `factor` times the greatest of `probes`³ look-ups on a regular lattice that includes the corners, and at
+    /// A grid with, in each cell, `factor` times the greatest of `probes`³ look-ups on a regular lattice that includes the corners, and at
     /// least `least` > 0: a floor that keeps the rate positive where the look-ups found nothing.
     ///
     /// # Errors
@@ -124,7 +124,7 @@ fn corners(bounds: &Bounds) -> (DVec3, DVec3) {
 }
 
 impl SamplingExtinction for Grid {
-    /// From cell to cell (amanatides-1987); the depth that is left when a cell's share is passed goes on into the next.
+    /// Flies from cell to cell (amanatides-1987); the depth that is left when a cell's share is passed goes on into the next.
     // Never inlined: where a grid is one of several sampling extinctions, its loop would take the registers of the others.
     #[inline(never)]
     fn fly(&self, line: &Line, from: f64, length: f64, depth: f64) -> Option<(f64, f64)> {

@@ -7,7 +7,7 @@ use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
 
-/// By how much the expected squared energy of the particles in the medium grows from one collision to the next.
+/// Factor by which the expected squared energy of the particles in the medium grows from one collision to the next.
 ///
 /// The k-th collision of a walk with energy E contributes E\[E_k²; still inside\] to the second moment of every score; these
 /// fall as factor^k where the walk is subcritical, and the sum diverges where factor ≥ 1. In an endless medium the factor of the
@@ -16,7 +16,7 @@ use glam::DVec3;
 pub struct Growth {
     /// The factor per collision, as measured.
     pub factor: f64,
-    /// Its standard error, from independent populations.
+    /// Standard error of the factor, from independent populations.
     pub standard_error: f64,
 }
 
@@ -32,7 +32,7 @@ pub enum Criticality {
 }
 
 impl Growth {
-    /// Below, above, or neither by four standard errors.
+    /// Compares the factor with 1: below, above, or neither by four standard errors.
     #[must_use]
     pub fn criticality(&self) -> Criticality {
         let margin = 4.0 * self.standard_error;
@@ -133,7 +133,7 @@ fn population<M: Medium, P: PhaseFunction, C: Spectrum>(
     Some(sum / f64::from(MEASURED))
 }
 
-/// As many particles as before, each in proportion to what it counts: systematic resampling with one variate.
+/// Draws as many particles as before, each in proportion to what it counts: systematic resampling with one variate.
 fn resample(from: &[(Line, f64)], count: f64, particles: &mut [Line], source: &mut impl UniformSource) {
     let shift = source.next_uniform();
     let mut entries = from.iter();

@@ -25,7 +25,7 @@ pub struct LineSplitting<'s, M, P, C, R> {
 }
 
 impl<'s, M, P, C, R> LineSplitting<'s, M, P, C, R> {
-    /// One set of flights through `majorant` \[1/length\] per camera ray, each continued by `walk`.
+    /// The integrator by one set of flights through `majorant` \[1/length\] per camera ray, each continued by `walk`.
     pub fn new(
         volume: &'s Volume<M, P, C>,
         lights: &'s Lights<C>,

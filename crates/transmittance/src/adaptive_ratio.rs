@@ -42,10 +42,10 @@ pub struct AdaptiveRatio {
 /// A floor that is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FloorError {
-    /// Not above 0, or NaN: the rate could vanish.
+    /// A floor that is not above 0, or NaN: the rate could vanish.
     #[error("floor must be greater than 0, found {0}")]
     NotPositive(f64),
-    /// Above 1.
+    /// A floor above 1.
     #[error("floor must be at most 1, found {0}")]
     AboveOne(f64),
 }

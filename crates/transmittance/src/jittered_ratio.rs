@@ -84,7 +84,7 @@ impl JitteredRatioInCells {
 /// Strata of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Strata {
-    /// Their number; 0 where there is nothing to look up.
+    /// Number of the strata; 0 where there is nothing to look up.
     pub(crate) count: f64,
     /// The width of each \[length\].
     pub(crate) width: f64,
@@ -146,7 +146,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for JitteredRatio {
         product.times_exp(0.0)
     }
 
-    /// Between 0 and the majorant. (Beyond them the mean would still be right, the range of the estimates not.)
+    /// True between 0 and the majorant. (Beyond them the mean would still be right, the range of the estimates not.)
     #[inline]
     fn admits(&self, field: &F, _s: f64, sigma_t: f64) -> bool {
         (0.0..=field.majorant()).contains(&sigma_t)
@@ -166,7 +166,7 @@ impl<F: BoundedInCells> TransmittanceEstimator<F> for JitteredRatioInCells {
         product.times_exp(-minorant_thickness)
     }
 
-    /// Between the bounds of the cell. (Beyond them the mean would still be right, the range of the estimates not.)
+    /// True between the bounds of the cell. (Beyond them the mean would still be right, the range of the estimates not.)
     #[inline]
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
         field.cells_admit(s, sigma_t)

@@ -68,7 +68,7 @@ pub struct PSeries {
 /// A pivot that is none.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PivotError {
-    /// Below 0.
+    /// A value below 0.
     #[error("pivot must be at least 0, found {0}")]
     Negative(f64),
     /// NaN or infinite.
@@ -116,8 +116,8 @@ impl PSeries {
     }
 }
 
-/// One more than the least k with P(N ≤ k) ≥ [`GOAL`], N of a Poisson law: the mass is built up in the order of georgiev-2019's
-/// code, which draws one point more than the goal needs.
+/// Number of orders that are drawn for sure: one more than the least k with P(N ≤ k) ≥ [`GOAL`], N of a Poisson law: the mass is
+/// built up in the order of georgiev-2019's code, which draws one point more than the goal needs.
 fn surely_drawn(mean: f64) -> u32 {
     let mut mass = SignedProduct::exp(-mean);
     let mut sum = 0.0;

@@ -109,7 +109,7 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
     }
 }
 
-/// Beyond exp of this, estimates are taken in units of the greatest: their eighth powers would overflow, and soon they themselves.
+/// Exponent from which on estimates are taken in units of the greatest: their eighth powers would overflow, and soon they themselves.
 const MOST_EXPONENT: f64 = 80.0;
 
 /// Rounds in which a greater exponent may be found: each halves the panels around it.

@@ -25,7 +25,7 @@ pub struct ResidualCells {
     rate: f64,
 }
 
-/// Why [`ResidualCells`] cannot be built.
+/// Error of [`ResidualCells`] that cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RateError {
     /// No collision would ever happen, or infinitely many.
@@ -91,7 +91,7 @@ impl<F: BoundedInCells> TransmittanceEstimator<F> for ResidualCells {
         weight.times_exp(-minorant_thickness)
     }
 
-    /// Between the bounds of the cell. (Beyond them the mean would still be right, the range of the estimates not.)
+    /// True between the bounds of the cell. (Beyond them the mean would still be right, the range of the estimates not.)
     #[inline]
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
         field.cells_admit(s, sigma_t)

@@ -37,7 +37,7 @@ impl SignedProduct {
         Self { mantissa: rest.exp(), scale: scale as i64 }
     }
 
-    /// This product over another, rounded once: 0 or infinite only where the quotient is. The other must not be 0.
+    /// Quotient of this product over another, rounded once: 0 or infinite only where the quotient is. The other must not be 0.
     #[inline]
     #[must_use]
     pub fn over(&self, other: &Self) -> f64 {

@@ -21,7 +21,7 @@ use glam::DVec3;
 enum Law {
     /// A closed form that must be a number.
     Known,
-    /// It has none, or the closed form ends (orders without number): what is not known says so by NaN.
+    /// An estimator has none, or the closed form ends (orders without number): what is not known says so by NaN.
     Open,
 }
 

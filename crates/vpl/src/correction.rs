@@ -25,7 +25,7 @@ pub trait Correction<W: Types> {
     fn recover(&mut self, at: Connections<'_, '_, W>, source: &mut impl UniformSource) -> W::Spectrum;
 }
 
-/// Nothing is made up for.
+/// Correction by nothing: what bounding takes away is lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uncorrected;
 

@@ -34,9 +34,9 @@ impl Term {
 pub enum Connected {
     /// All virtual point lights.
     All,
-    /// One of them.
+    /// One virtual point light, by its index.
     One(usize),
-    /// None: only emitters are seen.
+    /// No virtual point light: only emitters are seen.
     Nothing,
 }
 

@@ -218,7 +218,7 @@ mod tests {
         Line { origin: DVec3::Z, direction: DVec3::NEG_Z }
     }
 
-    /// On a ceiling at the height 2, above the floor at 0.
+    /// Virtual point lights on a ceiling at the height 2, above the floor at 0.
     fn lights(count: usize) -> Vec<Vpl<f64>> {
         (0..count)
             .map(|i| vpl(on_surface(dvec3(0.5 * i as f64, 0.0, 2.0), DVec3::NEG_Z, 1), 1.0 + i as f64))

@@ -1,4 +1,4 @@
-//! Fewer virtual point lights where they count less (engelhardt-2013 section 7).
+//! Thinning of virtual point lights where they count less (engelhardt-2013 section 7).
 
 use glam::DVec3;
 
@@ -8,9 +8,9 @@ use glam::DVec3;
 /// min(1, (radius/r)²) and weighs as much more: as their number falls with 1/r², so does what one of them could add.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepNear {
-    /// Near to where.
+    /// Point near to which virtual point lights are kept.
     pub point: DVec3,
-    /// Within this distance all are kept \[length\], positive.
+    /// Distance within which all are kept \[length\], positive.
     pub radius: f64,
 }
 

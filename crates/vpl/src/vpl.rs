@@ -17,7 +17,7 @@ pub struct Vpl<C> {
     pub incident: DVec3,
     /// The power that it scatters, a share of all light paths; of either sign where the walk has weights of either sign.
     pub power: C,
-    /// Its place on the light path: 1 for what a light source lit.
+    /// Number of the vertex on the light path: 1 for what a light source lit.
     pub bounce: u32,
 }
 

@@ -21,7 +21,7 @@ pub struct LineSampled<'s, M, P, C, T> {
 }
 
 impl<'s, M, P, C, T> LineSampled<'s, M, P, C, T> {
-    /// One set of flights through `majorant` \[1/length\] per camera ray; transmittance of shadow rays by `shadow`.
+    /// The estimator by one set of flights through `majorant` \[1/length\] per camera ray; transmittance of shadow rays by `shadow`.
     pub fn new(
         volume: &'s Volume<M, P, C>,
         lights: &'s Lights<C>,

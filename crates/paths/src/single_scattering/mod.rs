@@ -51,13 +51,13 @@ pub struct SingleScattering<'s, M, P, C, W, T> {
     candidates: Vec<(usize, C, f64)>,
 }
 
-/// Why a ray cannot be sampled as asked.
+/// Error of a ray that cannot be sampled as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SamplingError {
     /// The Cauchy distribution needs a light at a finite distance.
     #[error("source-driven sampling needs point lights; light {light} is directional")]
     DirectionalLight {
-        /// Its index among the sources.
+        /// Index of the light among the sources.
         light: usize,
     },
     /// No sample, no estimate.
@@ -184,7 +184,8 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, W: Primary<M>, T: RayTransmittanc
         sum
     }
 
-    /// As many interaction points as samples, chosen in proportion to |score without shadow ray|; each stands for the sum of all.
+    /// Estimates by as many interaction points as samples, chosen in proportion to |score without shadow ray|; each stands for the
+    /// sum of all.
     fn resampled(&mut self, ray: &Ray<&M>, light: &Source<C>, source: &mut impl UniformSource) -> C {
         self.candidates.clear();
         let mut total = 0.0;

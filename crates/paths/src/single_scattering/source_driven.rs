@@ -17,7 +17,7 @@ pub struct SourceDriven {
 }
 
 impl SourceDriven {
-    /// For a light at `position` and the first `length` > 0 of `line`.
+    /// The distribution for a light at `position` and the first `length` > 0 of `line`.
     #[inline]
     #[must_use]
     pub fn new(line: &Line, length: f64, position: DVec3) -> Self {

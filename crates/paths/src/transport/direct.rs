@@ -6,12 +6,12 @@ use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
 
-/// From where a path came to an emitter.
+/// Last scattering of a path that comes to an emitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scattered {
     /// The vertex that chose the direction.
     pub vertex: Vertex,
-    /// With this density \[1/sr\].
+    /// Density of that direction \[1/sr\].
     pub pdf_solid_angle: f64,
 }
 
@@ -130,7 +130,7 @@ mod tests {
 
     const ALL: [Heuristic; 3] = [Heuristic::Balance, Heuristic::Power, Heuristic::Maximum];
 
-    /// At the origin, facing up.
+    /// A vertex of the floor at the origin, facing up.
     fn on_floor() -> Vertex {
         Vertex { position: DVec3::ZERO, lobe: Lobe::Diffuse { normal: DVec3::Z, surface: 0 } }
     }
