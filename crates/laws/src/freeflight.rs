@@ -50,7 +50,7 @@ pub enum Weights {
 pub struct FlightExpectation {
     length: f64,
     weights: Weights,
-    /// For each of [`TEST_FUNCTIONS`].
+    /// Reference for each of [`TEST_FUNCTIONS`].
     collided: [Reference; TEST_FUNCTIONS.len()],
     escaped: Reference,
     lookups: Option<Reference>,
@@ -58,7 +58,7 @@ pub struct FlightExpectation {
 }
 
 impl FlightExpectation {
-    /// By quadrature: the means from the law itself, the other moments from the closed form of `sampler`.
+    /// Computes the expectations by quadrature: the means from the law itself, the other moments from the closed form of `sampler`.
     ///
     /// The `quadrature` has a border wherever σ_t or anything that the sampler knows is not smooth.
     pub fn new<F: Extinction + Clone, E: ClosedForm<F>>(
@@ -120,7 +120,7 @@ impl FlightExpectation {
         run.sufficient_for(references, run.alpha / self.tests() as f64)
     }
 
-    /// Without a word on look-ups.
+    /// The same expectations without those of look-ups.
     #[must_use]
     pub fn uncounted(&self) -> Self {
         Self { lookups: None, ..self.clone() }
@@ -156,7 +156,7 @@ fn scores(weights: Weights, is_indicator: bool) -> Scores {
     }
 }
 
-/// Why there is no evidence.
+/// Reason why there is no evidence.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FlightRefusal {
     /// A look-up found what the sampler is not defined for.
@@ -207,7 +207,7 @@ pub fn check<G: Extinction + Copy, E: FreeFlight<G> + FreeFlight<ObservedFlight<
     }
 }
 
-/// As [`check`], unwatched and uncounted: what a wrong twin is tried with.
+/// Judges as [`check`], unwatched and uncounted: what a wrong twin is tried with.
 ///
 /// # Errors
 /// If a flight is not lawful.

@@ -41,7 +41,7 @@ pub fn reference(expected: f64, law: LookupLaw) -> Option<Reference> {
     })
 }
 
-/// As [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
+/// The reference as by [`reference()`], where E\[N^k\] of the number N of look-ups of one estimate are known, k = 1, 2, ….
 #[must_use]
 pub fn with_moments(raw: &[f64]) -> Reference {
     let moments = ClosedMoments::from_raw(raw);

@@ -70,9 +70,9 @@ pub enum Broken {
 /// The outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
-    /// On the cosines of the drawn directions; detectable is a relative deviation of the probability of one cell.
+    /// Test of the cosines of the drawn directions; detectable is a relative deviation of the probability of one cell.
     pub cosine: GoodnessOfFit,
-    /// On their azimuths about the direction of travel before.
+    /// Test of the azimuths of the drawn directions about the direction of travel before.
     pub azimuth: GoodnessOfFit,
     /// (mean cosine drawn - stated)/standard error; told, not judged: the cells say more. `None` for no samples.
     pub mean_z: Option<f64>,
@@ -89,7 +89,7 @@ impl Evidence {
         }
     }
 
-    /// For a table.
+    /// The result for a table.
     #[must_use]
     pub fn result(&self, samples: u64) -> CheckResult {
         CheckResult {

@@ -27,7 +27,7 @@ pub struct CheckResult {
     pub normal_share: Option<f64>,
     /// The N that would make the mean testable, where it is not.
     pub samples_needed: Option<f64>,
-    /// Why, in words.
+    /// Reason, in words.
     pub reason: String,
 }
 

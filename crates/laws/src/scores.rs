@@ -16,9 +16,9 @@ pub const NEVER_NEGATIVE: Scores = Scores::Bounded { minimum: 0.0, maximum: f64:
 /// A closed interval that some quantity does not leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Its lower end.
+    /// Lower end of the interval.
     pub minimum: f64,
-    /// Its upper end.
+    /// Upper end of the interval.
     pub maximum: f64,
 }
 

@@ -76,7 +76,7 @@ where
     }
 }
 
-/// As [`check`], unwatched and uncounted: what a wrong twin is tried with.
+/// Judges as [`check`], unwatched and uncounted: what a wrong twin is tried with.
 ///
 /// # Errors
 /// If a flight is not lawful.

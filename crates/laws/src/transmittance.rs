@@ -71,11 +71,11 @@ impl Expectation {
 pub struct Evidence {
     /// The moments of the estimates, in the unit of the expectation.
     pub estimates: Moments,
-    /// On mean and variance.
+    /// Verdict on mean and variance.
     pub verdict: Verdict,
     /// The moments of the number of look-ups.
     pub lookups: Moments,
-    /// On the mean number of look-ups; `None` where nothing is known of it.
+    /// Verdict on the mean number of look-ups; `None` where nothing is known of it.
     pub lookups_verdict: Option<Verdict>,
 }
 
@@ -92,7 +92,7 @@ impl Evidence {
     }
 }
 
-/// Why there is no evidence.
+/// Reason why there is no evidence.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// A look-up found what the estimator is not defined for.
@@ -161,7 +161,7 @@ where
     })
 }
 
-/// As [`check`] for the estimates alone, unwatched and uncounted: what a wrong twin is tried with. All of the false
+/// Judges as [`check`] for the estimates alone, unwatched and uncounted: what a wrong twin is tried with. All of the false
 /// alarm goes to the estimates.
 ///
 /// # Errors

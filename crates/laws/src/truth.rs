@@ -12,18 +12,19 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// From a closed form.
+    /// The truth by a closed form.
     pub fn closed_form<F: OpticalThickness>(field: &F) -> Self {
         Self { optical_thickness: field.optical_thickness(0.0, field.length()), error: 0.0 }
     }
 
-    /// From quadrature of a profile that knows all its breakpoints, with the error that it estimated: what a closed form is checked against.
+    /// The truth by quadrature of a profile that knows all its breakpoints, with the error that it estimated: what a closed form is checked
+    /// against.
     pub fn quadrature<F: Breakpoints>(quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Self {
         let integral = quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]);
         Self { optical_thickness: integral.value[0], error: integral.error[0] }
     }
 
-    /// From a certificate, with the error that it proves; infinite where it proves none.
+    /// The truth by a certificate, with the error that it proves; infinite where it proves none.
     #[must_use]
     pub fn certified(certificate: &Certificate) -> Self {
         Self { optical_thickness: certificate.thickness, error: certificate.error }

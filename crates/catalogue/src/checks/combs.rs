@@ -115,7 +115,7 @@ fn lookups_of(estimator: &UnbiasedRayMarching) -> LookupLaw {
     LookupLaw::Moments((0..estimator.segments()).fold(shared, |whole, _| lookups::sum(&whole, &segment)))
 }
 
-/// With the roulette that a thousand earlier estimates have tuned.
+/// Check of the roulette that a thousand earlier estimates have tuned.
 fn tuned<F: SpecimenField>(
     specimen: &Arc<Specimen<F>>,
     samples: u64,
@@ -137,7 +137,7 @@ fn tuned<F: SpecimenField>(
     .about(["unbiased_ray_marching"])
 }
 
-/// Without and with endpoint matching.
+/// Checks of telescoping combs without and with endpoint matching.
 fn telescoping<F: SpecimenField>(
     specimen: &Arc<Specimen<F>>,
     samples: u64,

@@ -30,7 +30,7 @@ pub(super) fn checks() -> Vec<Check> {
     vec![taught(&smooth), untaught(&smooth), taught(&rough), untaught(&rough), taught(&ray)]
 }
 
-/// By pilots of the profile itself, from a stream that no estimate draws from.
+/// Check of a hybrid with experience from pilots of the profile itself, from a stream that no estimate draws from.
 fn taught<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
     add(specimen, "hybrid", Law::Transmittance, SAMPLES, move |specimen, run| {
         let mut source = Seeded::new(derive_seed(run.seed, 1 << 40));

@@ -86,7 +86,7 @@ impl<F: SpecimenField> Specimen<F> {
         self.examine_with_lookups(estimator, also, scores, |_| lookups, run)
     }
 
-    /// As [`Self::examine`], with a law of look-ups that is an integral along the field.
+    /// Judges as [`Self::examine`], with a law of look-ups that is an integral along the field.
     ///
     /// N is at least what the closed moments ask for, so that no seed makes the check untestable.
     pub(super) fn examine_with_lookups<'f, E: ClosedForm<F>>(

@@ -60,7 +60,7 @@ fn connection(scene: &Local, distance: f64) -> Outcome {
     Outcome::value(ours, if distance == 0.0 { 0.0 } else { exact }, 1e-14)
 }
 
-/// With compensation, by the law; by the extreme variates, finite.
+/// Outcome with compensation: judged by its law, and finite for the extreme variates.
 fn compensated(scene: &Local, placement: Placement, run: fairflight_laws::Run) -> Outcome {
     let mean = LocalMean::of(&scene.volume.medium, &scene.volume.bounds, [1; 3], 1);
     let options = CompensationOptions { placement, steps: Some(1), ..CompensationOptions::EXACT };

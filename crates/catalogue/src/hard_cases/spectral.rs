@@ -40,7 +40,7 @@ fn furnace<E: SpectralFreeFlight<Clear, 3>>(sampler: impl Fn(f64) -> E, source: 
     }
 }
 
-/// Each channel judged; and where weights share a sum, that it is kept by each path to rounding.
+/// Outcome of a judged furnace, channel by channel; where weights share a sum, each path must keep it to rounding.
 fn judged_furnace(
     run: Run,
     most: Option<f64>,

@@ -32,9 +32,9 @@ pub const OBLIQUE: f64 = 0.6;
 /// The radiance that leaves a slab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
-    /// On the side of the light.
+    /// Radiance on the side of the light.
     pub reflected: f64,
-    /// On the other side; diffuse light that passed unscattered included.
+    /// Radiance on the other side; diffuse light that passed unscattered included.
     pub transmitted: f64,
     /// A bound of the error of both, measured.
     pub error: f64,

@@ -36,7 +36,7 @@ pub struct Rejection {
     pub mean_z: Option<f64>,
     /// The z-score of its variance, where it has one.
     pub variance_z: Option<f64>,
-    /// Why, in words.
+    /// Reason, in words.
     pub reason: String,
 }
 
@@ -89,7 +89,7 @@ pub enum Evident {
 /// A wrong twin.
 #[derive(Debug)]
 pub struct Twin {
-    /// Unique.
+    /// Unique name.
     pub id: &'static str,
     /// The estimator that it is a twin of, in words.
     pub of: &'static str,

@@ -15,7 +15,7 @@ pub enum Scoring {
     Ratio,
     /// The same; a collision ends the walk with probability σ_t/μ.
     Delta,
-    /// With e = exp(−μ(S − x)), e/(1 + e) at each point and once more for leaving from there; a collision weighs 1 − σ_t/μ.
+    /// e/(1 + e) at each point and once more for leaving from there, with e = exp(−μ(S − x)); a collision weighs 1 − σ_t/μ.
     Unidirectional,
 }
 

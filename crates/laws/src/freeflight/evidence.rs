@@ -42,7 +42,7 @@ impl FlightEvidence {
         self.flights.iter().find(|part| part.name == name).map(|part| &part.verdict)
     }
 
-    /// On the distances of an unweighted sampler.
+    /// The test of the distances of an unweighted sampler.
     #[must_use]
     pub fn distances(&self) -> Option<&GoodnessOfFit> {
         self.distances.as_ref()

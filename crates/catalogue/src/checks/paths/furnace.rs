@@ -115,7 +115,7 @@ fn lights() -> Lights<f64> {
     Lights { background: Background { constant: 1.0, maps: Vec::new() }, sources: Vec::new() }
 }
 
-/// Through the middle and past it.
+/// Lines through the middle and past it.
 fn lines() -> [Line; 2] {
     let line = |beside: f64| Line { origin: dvec3(beside, 0.0, -20.0), direction: DVec3::Z };
     [line(0.0), line(0.1)]

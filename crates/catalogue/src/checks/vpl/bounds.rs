@@ -130,7 +130,7 @@ fn same(name: &str, function: impl Fn(Run) -> CheckResult + Send + Sync + 'stati
     Check::new(id, Law::Bound, "virtual point lights", "furnace", SETS, function)
 }
 
-/// At a point of a floor and at one in eq. 21 above it: under an even sky, and in a room with a lamp.
+/// Check at a point of a floor and at one in eq. 21 above it: under an even sky, and in a room with a lamp.
 fn at_most(id: String, bound: f64, steps: Option<u32>) -> Check {
     Check::new(id, Law::Bound, "compensation by flights", "eq21", DRAWS, move |run| {
         let (sky, smoke) = (open(AnalyticCosine::new(2.0).expect(LAWFUL)), smoky());

@@ -91,7 +91,7 @@ fn walk(rate: f64) -> Walk<Uniform> {
     Walk::new(Version::NonTerminating, Uniform::new(rate * tiny::SIGMA_T).expect(LAWFUL))
 }
 
-/// One of two parts of a check.
+/// The run of one of two parts of a check.
 fn part(run: Run, index: u64) -> Run {
     Run { seed: derive_seed(run.seed, index), alpha: 0.5 * run.alpha, ..run }
 }

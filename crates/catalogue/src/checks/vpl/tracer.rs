@@ -90,7 +90,7 @@ fn floor() -> fairflight_scene::Surface<f64> {
     diffuse(rectangle(dvec3(-3.0, 0.0, -3.0), 6.0 * DVec3::Z, 6.0 * DVec3::X), FLOOR, 0.0)
 }
 
-/// Through a medium that absorbs alone, from a black lamp: one reflection is all there is.
+/// Check through a medium that absorbs alone, from a black lamp: one reflection is all there is.
 fn rectangle_lamp(name: &str, heuristic: Heuristic) -> Check {
     let (corner, u, v) = (dvec3(-0.9, 0.6, -0.5), dvec3(0.8, 0.1, 0.0), dvec3(0.0, 0.0, 0.9));
     let sigma_t = 0.5;

@@ -13,7 +13,7 @@ use fairflight_laws::freeflight::{FlightExpectation, ObservedFlight, Weights, ch
 use fairflight_laws::{CheckResult, Run};
 use fairflight_media::{Extinction, RayQuadrature, Tolerance};
 
-/// As the macro of estimators; `weights` says what is known of the weights of its flights.
+/// Makes a subject, as the macro of estimators; `weights` says what is known of the weights of its flights.
 macro_rules! flight {
     ($kind:literal, $name:literal, above: $above:literal, below: $below:literal, $weights:expr, |$profile:pat_param| $make:expr) => {
         Subject::new(

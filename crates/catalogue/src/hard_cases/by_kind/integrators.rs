@@ -183,7 +183,7 @@ fn at_the_ends(index: usize) -> Outcome {
     Outcome::said(true, "finite")
 }
 
-/// Through the middle.
+/// A line through the middle of the ball.
 const THROUGH: Line = Line { origin: DVec3::ZERO, direction: DVec3::Z };
 
 /// Hard cases of every integrator.

@@ -30,9 +30,9 @@ struct Found {
 
 /// An estimator or a sampler of free flights, as the rows need it.
 struct Subject {
-    /// Its kind.
+    /// Kind of the estimator or sampler.
     kind: &'static str,
-    /// Its name among those of its kind.
+    /// Name among those of the same kind.
     name: &'static str,
     /// True if it admits σ_t above the majorant that a profile claims.
     above: bool,
@@ -40,7 +40,7 @@ struct Subject {
     below: bool,
     /// Selects the profiles that it is tried on: some have laws or look-ups too dear to evaluate.
     is_tried: fn(&Profile) -> bool,
-    /// Its law on a profile.
+    /// Judges a run by the law on a profile.
     examine: fn(&Profile, Run) -> Found,
     /// Finds the refusals among its look-ups.
     watch: fn(&Profile) -> Found,
@@ -77,7 +77,7 @@ const WATCHED: Run = Run { samples: 2_000, seed: 15, alpha: 1e-6 };
 /// Look-ups on one profile: an answer is to be right, not precise.
 const BUDGET: f64 = 4e5;
 
-/// As many of `samples` as the budget allows, where one costs so many look-ups; 2 at least.
+/// Number of samples that the budget allows, where one costs so many look-ups; 2 at least, `samples` at most.
 fn affordable(samples: u64, cost: f64) -> u64 {
     samples.min((BUDGET / cost.max(1.0)) as u64).max(2)
 }
