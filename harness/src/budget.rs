@@ -9,7 +9,7 @@ use cpu_time::ThreadTime;
 pub struct Budget(f64);
 
 impl Budget {
-    /// Without a word on the command line: at 30 ns a look-up, fifty minutes on one core.
+    /// The budget without a word on the command line: at 30 ns a look-up, fifty minutes on one core.
     pub const USUAL: Self = Self(1e11);
 
     /// The budget of so many look-ups.

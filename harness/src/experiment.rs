@@ -208,7 +208,7 @@ pub fn analyse(
     }
 }
 
-/// Beyond this relative error an integral of the variance has not converged: it may well be infinite.
+/// Relative error beyond which an integral of the variance has not converged: it may well be infinite.
 const DIVERGENCE: f64 = 1e-2;
 
 fn variance_is_known(theory: &Theory) -> bool {

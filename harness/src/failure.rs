@@ -1,4 +1,4 @@
-//! Why a run ends without a result, and with which exit code.
+//! Failures: reasons for which a run ends without a result, and the exit codes.
 
 use serde_json::Value;
 use std::fmt;

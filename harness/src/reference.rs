@@ -13,9 +13,9 @@ use fairflight_transmittance::Theory;
 pub struct Truth {
     /// ∫ σ_t ds.
     pub optical_thickness: f64,
-    /// Its absolute error: a bound, or an estimate where there is a `doubt`.
+    /// Absolute error of the optical thickness: a bound, or an estimate where there is a `doubt`.
     pub thickness_error: f64,
-    /// Why no bound of the error is proved, and what the optical thickness is proved not to leave; `None` for what is certified.
+    /// Reason why no bound of the error is proved, and proved bounds of the optical thickness; `None` for what is certified.
     pub doubt: Option<(Doubt, (f64, f64))>,
     /// Method by which the optical thickness is known.
     pub method: ThicknessMethod,
@@ -117,7 +117,7 @@ fn above_declared(profile: &AnyProfile, s: f64, sigma_t: f64, bound: f64) -> Fai
     ))
 }
 
-/// Why a look-up was not lawful, in words.
+/// Failure of a look-up that was not lawful, in words.
 #[must_use]
 pub fn explain(profile: &AnyProfile, estimator: &Prepared, truth: &Truth, violation: Violation) -> Failure {
     let Violation { s, sigma_t } = violation;

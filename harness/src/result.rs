@@ -7,7 +7,7 @@ use serde_json::Value;
 /// The results of a sweep.
 #[derive(Clone, Debug, Serialize)]
 pub struct SweepResult<R> {
-    /// One for each value, in their order.
+    /// The results, one for each value, in their order.
     pub points: Vec<SweepPoint<R>>,
 }
 
@@ -43,13 +43,13 @@ pub struct ExperimentResult {
 pub struct Estimate {
     /// Mean of the estimates.
     pub mean: f64,
-    /// Its standard error: from the closed form where one exists.
+    /// Standard error of the mean: from the closed form where one exists.
     #[serde(serialize_with = "number")]
     pub mean_standard_error: Option<f64>,
     /// Sample variance of the estimates.
     #[serde(serialize_with = "number")]
     pub variance: Option<f64>,
-    /// Its standard error: from the closed form where one exists.
+    /// Standard error of the variance: from the closed form where one exists.
     #[serde(serialize_with = "number")]
     pub variance_standard_error: Option<f64>,
     /// Least estimate.
@@ -68,7 +68,7 @@ pub struct ReferenceResult {
     /// The variance of one estimate; "infinity" where it overflows or does not exist.
     #[serde(serialize_with = "number")]
     pub variance: Option<f64>,
-    /// Its natural logarithm; null for zero variance.
+    /// Natural logarithm of the variance; null for zero variance.
     #[serde(serialize_with = "number")]
     pub log_variance: Option<f64>,
     /// Bound of the absolute error of `transmittance`.
@@ -116,7 +116,7 @@ pub struct VerdictResult {
     pub detectable_relative_bias: Option<f64>,
     /// true, false, or null: not testable at this N.
     pub sound: Option<bool>,
-    /// Why.
+    /// Reason, in words.
     pub reason: String,
     /// The N that a test would take.
     #[serde(serialize_with = "number")]

@@ -36,7 +36,7 @@ pub(super) struct Answer {
 #[derive(Debug, Serialize)]
 pub(super) struct Advice {
     estimator: &'static str,
-    /// As an experiment takes it, for the ray in the middle by optical thickness.
+    /// The estimator as an experiment takes it, for the ray in the middle by optical thickness.
     spec: Option<Value>,
     /// Look-ups of one estimate.
     lookups: Spread,
@@ -46,7 +46,7 @@ pub(super) struct Advice {
     gain_per_second: Advantage,
 }
 
-/// Over the rays.
+/// Spread of a quantity over the rays.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Spread {
     median: f64,
@@ -75,9 +75,9 @@ pub(super) struct Contestant {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum How {
-    /// From closed forms and a pilot of each ray.
+    /// The price by closed forms and a pilot of each ray.
     Forecast,
-    /// From a few estimates on a few rays.
+    /// The price by a few estimates on a few rays.
     Trial,
 }
 

@@ -12,9 +12,9 @@ use fairflight_media::Tolerance;
 pub struct Bout {
     /// Var/T², in closed form where there is one, else as measured.
     pub relative_variance: f64,
-    /// As measured.
+    /// Var/T² as measured.
     pub measured_variance: f64,
-    /// The standard error of the measured one, from its sample's fourth moment.
+    /// Standard error of the measured variance, from its sample's fourth moment.
     pub variance_error: f64,
     /// True if `relative_variance` is the closed form.
     pub is_closed: bool,
@@ -24,7 +24,7 @@ pub struct Bout {
     pub seconds: f64,
     /// E\[estimate\]/T as measured.
     pub relative_mean: f64,
-    /// Its standard error, from the variance above.
+    /// Standard error of the mean, from the variance above.
     pub mean_error: f64,
     /// The share of estimates below zero.
     pub negative: f64,
@@ -56,9 +56,9 @@ impl Bout {
 /// The z-scores of many results as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pooled {
-    /// Their sum over the square root of their number: a standard normal variate if all means are right.
+    /// Sum of the z-scores over the square root of their number: a standard normal variate if all means are right.
     pub z: f64,
-    /// Their number.
+    /// Number of the results.
     pub bouts: usize,
 }
 

@@ -12,7 +12,7 @@ use fairflight_transmittance::{Experience, Pilot};
 pub struct Contest {
     /// The entrants.
     pub entrants: Vec<Entrant>,
-    /// For each entrant its results, in the order of the rays.
+    /// Results of each entrant, in the order of the rays.
     pub bouts: Vec<Vec<Bout>>,
     /// Look-ups of the pilots, per ray.
     pub pilot_lookups: f64,

@@ -88,7 +88,7 @@ fn depth(ray: &TestRay) -> f64 {
     ray.majorant * ray.profile.length()
 }
 
-/// As many look-ups as ratio tracking has on average, 1 at least.
+/// Number of look-ups that ratio tracking has on average, 1 at least.
 fn as_many(ray: &TestRay) -> u32 {
     depth(ray).round().max(1.0) as u32
 }
@@ -133,7 +133,7 @@ fn jittered(ray: &TestRay, epsilon: f64) -> Parameters {
     spec(JitteredRatioSpec::below(ray.majorant, epsilon))
 }
 
-/// One cell per unit of the majorant's optical thickness.
+/// Cells along the ray, one per unit of the majorant's optical thickness.
 fn cells(ray: &TestRay) -> CellsSpec {
     CellsSpec::Count(as_many(ray))
 }

@@ -17,9 +17,9 @@ pub enum Unit {
 pub struct Gain {
     /// The geometric mean over rays.
     pub mean: f64,
-    /// Its 95 % interval, over the choice of rays (bootstrap).
+    /// 95 % interval of the mean, over the choice of rays (bootstrap).
     pub interval: [f64; 2],
-    /// On the worst ray.
+    /// The gain on the worst ray.
     pub worst: f64,
     /// A tenth of the rays gain less.
     pub tenth: f64,
@@ -27,7 +27,7 @@ pub struct Gain {
 
 /// Resamples of the interval.
 const RESAMPLES: usize = 2000;
-/// Below this a variance is rounding: gains beyond are not told apart.
+/// Variance below which all is rounding: gains beyond are not told apart.
 const ROUNDING: f64 = 1e-26;
 
 /// The gain of `ours` over `theirs`, which are of the same rays in the same order; `None` without rays.

@@ -65,7 +65,7 @@ impl ControlSpec {
         Self::Constant(ConstantControlSpec { sigma_main })
     }
 
-    /// Through so many look-ups of the profile.
+    /// The control through so many look-ups of the profile.
     #[must_use]
     pub fn through(count: u32) -> Self {
         Self::Explorers(ExplorersSpec { count })
@@ -101,7 +101,7 @@ pub enum AnyControl {
     Constant(Constant),
     /// Linear between nodes.
     PiecewiseLinear(PiecewiseLinear),
-    /// Through look-ups of the profile.
+    /// The control through look-ups of the profile.
     Explorers(Explorers),
 }
 

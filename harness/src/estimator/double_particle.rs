@@ -28,7 +28,7 @@ fn model() -> DoubleParticle {
 }
 
 impl DoubleParticleSpec {
-    /// With a constant sampling extinction \[1/length\].
+    /// The spec with a constant sampling extinction \[1/length\].
     #[must_use]
     pub fn at(sigma_samp: f64, control: ControlSpec) -> Self {
         Self { sigma_samp: SamplingSpec::Constant(sigma_samp), control }

@@ -31,7 +31,7 @@ pub enum Expected {
 pub struct RayKnown {
     /// The distance of its start from the origin in which edges are given.
     pub from: f64,
-    /// Its length.
+    /// Length of the ray \[length\].
     pub length: f64,
     /// The declared majorant.
     pub upper_bound: Option<f64>,
@@ -63,12 +63,12 @@ impl Work {
         Self { preparation: 0.0, on_each_ray: 0.0, estimate, key }
     }
 
-    /// With so many look-ups before the first estimate.
+    /// The same work with so many look-ups before the first estimate.
     pub(super) fn after(self, preparation: f64) -> Self {
         Self { preparation, ..self }
     }
 
-    /// With so many look-ups before the first estimate, of each ray where there are many.
+    /// The same work with so many look-ups before the first estimate, of each ray where there are many.
     pub(super) fn after_on_each_ray(self, lookups: f64) -> Self {
         Self { preparation: lookups, on_each_ray: lookups, ..self }
     }

@@ -24,9 +24,9 @@ pub struct InScene<'a> {
 /// Look-ups before the first pixel, which none is charged with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Preparation {
-    /// Their number.
+    /// Number of the look-ups.
     pub lookups: u64,
-    /// Their use, in words.
+    /// Use of the look-ups, in words.
     pub purpose: String,
 }
 

@@ -24,13 +24,13 @@ kind! {
 }
 
 impl JitteredRatioSpec {
-    /// Below a majorant [1/length].
+    /// The spec below a majorant [1/length].
     #[must_use]
     pub fn below(majorant: f64, epsilon: f64) -> Self {
         Self { cells: None, majorant: Some(majorant), epsilon }
     }
 
-    /// Within bounds in cells.
+    /// The spec within bounds in cells.
     #[must_use]
     pub fn in_cells(cells: CellsSpec, epsilon: f64) -> Self {
         Self { cells: Some(cells), majorant: None, epsilon }

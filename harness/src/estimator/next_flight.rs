@@ -14,9 +14,9 @@ pub enum NextFlightKind {
     Delta,
     /// Flights are weighted.
     Ratio,
-    /// With ratio tracking, by the balance heuristic.
+    /// Combination with ratio tracking, by the balance heuristic.
     Unidirectional,
-    /// With ratio tracking, from both ends.
+    /// Combination with ratio tracking, from both ends.
     Bidirectional,
 }
 

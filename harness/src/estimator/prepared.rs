@@ -54,7 +54,7 @@ impl Prepared {
         }
     }
 
-    /// With the majorant that it claims.
+    /// The same estimator with the majorant that it claims.
     pub(super) fn claiming(self, majorant: f64) -> Self {
         let otherwise = Arc::clone(&self.objection);
         let objection = move |place: &str, s: f64, sigma_t: f64| {
@@ -67,7 +67,7 @@ impl Prepared {
         Self { claimed_majorant: Some(majorant), objection: Arc::new(objection), ..self }
     }
 
-    /// With the least and the greatest value that an estimate can take.
+    /// The same estimator with the least and the greatest value that an estimate can take.
     pub(super) fn within(self, range: Option<(f64, f64)>) -> Self {
         let Some((minimum, maximum)) = range else { return self };
         self.scoring(move |unit| Scores::Bounded {
@@ -76,12 +76,12 @@ impl Prepared {
         })
     }
 
-    /// With the values that an estimate can take.
+    /// The same estimator with the values that an estimate can take.
     pub(super) fn scoring(self, scores: impl Fn(Unit) -> Scores + Send + Sync + 'static) -> Self {
         Self { scores: Arc::new(scores), ..self }
     }
 
-    /// With the reason why a value of σ_t is not lawful.
+    /// The same estimator with the reason why a value of σ_t is not lawful.
     pub(super) fn objecting(
         self,
         objection: impl Fn(&str, f64, f64) -> String + Send + Sync + 'static,

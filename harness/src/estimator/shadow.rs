@@ -16,9 +16,9 @@ use std::cell::Cell;
 /// The part of an estimator that is the same for all rays.
 #[derive(Debug)]
 pub enum Shadow {
-    /// In closed form, where the medium has one.
+    /// Transmittance in closed form, where the medium has one.
     Regular,
-    /// By an estimator.
+    /// Transmittance by an estimator.
     Sampled(RayEstimator),
 }
 
@@ -32,7 +32,7 @@ impl Shadow {
         Self::of(RayKind::Erased(Box::new(estimator)))
     }
 
-    /// With what was looked up for it.
+    /// The same shadow rays with the look-ups that their preparation cost.
     pub(super) fn after(self, preparation: Preparation) -> Self {
         match self {
             Self::Regular => self,
@@ -81,9 +81,9 @@ impl Shadow {
 /// Transmittance of any kind: one branch per ray.
 #[derive(Debug)]
 pub enum ShadowWorker<'a> {
-    /// In closed form.
+    /// Transmittance in closed form.
     Regular(Regular),
-    /// By an estimator.
+    /// Transmittance by an estimator.
     Sampled(RayWorker<'a>),
 }
 

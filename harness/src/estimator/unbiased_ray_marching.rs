@@ -37,9 +37,9 @@ words! {
 /// The rule by which the series of an unbiased ray march stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RouletteSpec {
-    /// With this probability at once.
+    /// The roulette that stops with this probability at once.
     Stop(f64),
-    /// With what fits the variance of earlier combs.
+    /// The roulette that fits the variance of earlier combs.
     SelfTuned,
 }
 
@@ -92,11 +92,11 @@ kind! {
     check UnbiasedRayMarchingSpec::check
 }
 
-/// More segments than this, and their closed form is costly.
+/// Number of segments above which their closed form is costly.
 pub(super) const FEW_SEGMENTS: u32 = 8;
 
 impl UnbiasedRayMarchingSpec {
-    /// One segment of so many teeth in a comb of some shape.
+    /// The spec of one segment of so many teeth in a comb of some shape.
     #[must_use]
     pub fn of(shape: CombShape, teeth: u32) -> Self {
         let (comb, endpoint_matching, order) = match shape {
@@ -165,7 +165,7 @@ impl UnbiasedRayMarchingSpec {
 #[derive(Clone, Copy, Debug)]
 enum Teeth {
     Always(u32),
-    /// By the rule, from the optical thickness of this majorant \[1/length\].
+    /// The number of teeth by the rule, from the optical thickness of this majorant \[1/length\].
     OfMajorant(f64),
 }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A medium of any kind.
 #[derive(Clone, Debug)]
 pub enum AnyMedium {
-    /// None: of a scene without a medium.
+    /// No medium: that of a scene without one.
     Empty,
     /// The same everywhere.
     Homogeneous(Arc<Homogeneous>),

@@ -28,7 +28,7 @@ pub struct Image {
 /// An image that claims more pixels than this is refused before memory is asked for: 3 GiB of f32 RGB.
 pub const MOST_PIXELS: u64 = 1 << 28;
 
-/// Why bytes are no image.
+/// Error of bytes that are no image.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ImageError {
     /// The header, or what the format's reader says.
@@ -64,9 +64,9 @@ pub enum ImageError {
     /// Radiance is a finite number.
     #[error("pixel (column {column}, row {row}) holds {value}, which is no radiance")]
     NotFinite {
-        /// From the left.
+        /// Column from the left.
         column: usize,
-        /// From the top.
+        /// Row from the top.
         row: usize,
         /// The value that was found.
         value: f32,
