@@ -68,7 +68,7 @@ impl Progress {
         }
     }
 
-    /// There are so many steps in all.
+    /// Sets the number of steps in all.
     pub fn set_length(&self, length: u64) {
         match &self.0 {
             Told::Nowhere => {}

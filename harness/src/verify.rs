@@ -145,13 +145,13 @@ struct Finding<'a> {
     estimator: &'a str,
     kinds: &'a [&'static str],
     medium: &'a str,
-    /// Null: not testable.
+    /// True if the law holds; null: not testable.
     holds: Option<bool>,
     samples: u64,
     mean_z: Option<f64>,
     variance_z: Option<f64>,
     lookups_z: Option<f64>,
-    /// Without the factors of safety of the verdict; `level` says how each is to be read.
+    /// P-values without the factors of safety of the verdict; `level` says how each is to be read.
     p_values: Vec<serde_json::Value>,
     detectable_relative_bias: Option<f64>,
     #[serde(serialize_with = "number")]

@@ -20,7 +20,7 @@ pub struct Things {
     pub name: &'static str,
     /// The same, several.
     pub title: &'static str,
-    /// Its kinds.
+    /// The kinds of the thing.
     pub kinds: Vec<Listed>,
 }
 

@@ -53,7 +53,7 @@ impl Shares {
         self.0.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp()
     }
 
-    /// By how many standard deviations of the logarithm over the seeds the mean stays below 1, where a check stops being testable.
+    /// Number of standard deviations of the logarithm over the seeds by which the mean stays below 1, where a check stops being testable.
     fn margin(&self) -> f64 {
         let n = self.0.len() as f64;
         let mean = self.0.iter().sum::<f64>() / n;

@@ -52,7 +52,7 @@ fn the_first_estimates_are_fixed() {
     }
 }
 
-/// In the order of the test.
+/// Golden values, in the order of the test.
 const GOLDEN: [[f64; 6]; 10] = [
     [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], // woodcock
     [

@@ -258,7 +258,7 @@ impl IntegratorPlan {
         }
     }
 
-    /// Why a look-up was not lawful for an estimator of transmittance.
+    /// Failure of a look-up that was not lawful for an estimator of transmittance.
     #[must_use]
     pub fn explain(&self, Unlawful { point, sigma_t }: Unlawful) -> Failure {
         let at = format!("sigma_t = {sigma_t} at [{}, {}, {}]", point.x, point.y, point.z);

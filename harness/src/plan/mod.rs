@@ -1,4 +1,4 @@
-//! From a spec to something that can run: fields and estimators that fit together.
+//! Plans: fields and estimators of a spec that fit together and can run.
 //!
 //! The registry of the harness. A profile is one of a closed list of field types; the estimator is instantiated over that
 //! type, so that a look-up is a direct call. Control and sampling extinction are enums inside the estimator: their

@@ -19,7 +19,7 @@ pub enum AnyPhase {
 }
 
 impl AnyPhase {
-    /// Its greatest value, to the fineness of a grid of cosines that has both ends \[1/sr\].
+    /// Greatest value of the phase function, to the fineness of a grid of cosines that has both ends \[1/sr\].
     #[must_use]
     pub fn greatest(&self) -> f64 {
         const STEPS: u32 = 1024;

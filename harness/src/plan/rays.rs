@@ -35,7 +35,7 @@ pub(super) fn rays_of(spec: &SceneSpec, bounds: &Bounds) -> Vec<Clip> {
     rays
 }
 
-/// From a point that is seen to one of the lights, in any direction where that has no place.
+/// Draws a connection from a point that is seen to one of the lights, in any direction where that has no place.
 fn connection(lights: &[LightSpec], seen: &Clip, bounds: &Bounds, source: &mut Seeded) -> Clip {
     let point = seen.line.at(source.next_uniform() * seen.length);
     let light = lights.get((source.next_uniform() * lights.len() as f64) as usize);

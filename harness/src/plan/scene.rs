@@ -126,7 +126,7 @@ fn is_gray(map: &Image) -> bool {
 }
 
 impl<C: Spectrum> Radiant<C> {
-    /// In the channels that `of` takes of red, green and blue.
+    /// Builds the parts in the channels that `of` takes of red, green and blue.
     fn build(spec: &SceneSpec, maps: &[Option<Image>], of: impl Fn([f64; 3]) -> C) -> Result<Self, Failure> {
         let albedo = spec.medium.as_ref().map_or(C::ZERO, |volume| of(volume.albedo.rgb()));
         let mut lights = Lights { background: Background::dark(), sources: Vec::new() };

@@ -58,7 +58,7 @@ pub struct VplPlan {
     pub transport: TransportPlan,
     /// Light paths per set.
     pub light_paths: u32,
-    /// Within this distance from the camera all virtual point lights are kept.
+    /// Distance from the camera within which all virtual point lights are kept \[length\].
     pub keep_near: Option<f64>,
     /// The bound of the geometric term as given.
     pub clamp: ClampSpec,

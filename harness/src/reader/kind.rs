@@ -137,7 +137,7 @@ pub struct Listed {
     pub name: &'static str,
     /// The quantity or method, and where it comes from.
     pub about: &'static str,
-    /// Its keys.
+    /// The keys of the kind.
     pub keys: Vec<Key>,
 }
 

@@ -15,7 +15,7 @@ pub(super) struct Batch<C> {
 }
 
 impl<C> Batch<C> {
-    /// Nothing is shared.
+    /// A batch without anything that is shared.
     pub(super) fn none() -> Self {
         Self { vpls: Vec::new(), bound: f64::INFINITY, photons: None }
     }

@@ -27,10 +27,10 @@ pub(super) struct Canvas<C> {
 /// An image with what it cost.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Drawn<C> {
-    /// Row by row from the top.
+    /// Pixels, row by row from the top.
     pub pixels: Vec<Pixel<C>>,
     pub cost: Spent,
-    /// Per pixel.
+    /// Samples per pixel.
     pub samples: u32,
     pub mean_variance: MeanVariance,
     /// Warning about the walks.
@@ -40,9 +40,9 @@ pub(super) struct Drawn<C> {
 /// Source of the variance of the image's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum MeanVariance {
-    /// From the pixels, which share no randomness but for what adds this; `None` if that is not known.
+    /// The pixels, which share no randomness but for what adds this; `None` if that is not known.
     OfPixels { shared: Option<f64> },
-    /// This, from the means of passes: all pixels of a pass share its batch. `None` for fewer than two passes.
+    /// This variance, from the means of passes: all pixels of a pass share its batch. `None` for fewer than two passes.
     OfPasses(Option<f64>),
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Draw<'a, C> {
     pub plan: &'a ScenePlan,
     pub radiant: &'a Radiant<C>,
     pub seed: u64,
-    /// Is told how many samples were added.
+    /// Callback that is told how many samples were added.
     pub advance: &'a (dyn Fn(u64) + Sync),
 }
 

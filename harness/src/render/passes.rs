@@ -6,14 +6,14 @@ use crate::interrupt::GentleStop;
 use crate::plan::ScenePlan;
 use std::time::Instant;
 
-/// Why drawing ended.
+/// Reason why drawing ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
     /// All samples of the plan are drawn.
     Complete,
-    /// After this time \[s\].
+    /// The time limit \[s\] was reached.
     TimeLimit(f64),
-    /// By an interrupt.
+    /// An interrupt came.
     Interrupted,
 }
 
@@ -37,12 +37,12 @@ impl End {
     }
 }
 
-/// When to stop before all is drawn, after a whole pass of one sample per pixel.
+/// Conditions to stop before all is drawn, after a whole pass of one sample per pixel.
 #[derive(Debug)]
 pub(super) struct EarlyEnd {
-    /// By the clock on the wall \[s\].
+    /// Time limit by the clock on the wall \[s\].
     pub limit: Option<f64>,
-    /// By an interrupt.
+    /// The first interrupt, which ends drawing.
     pub stop: GentleStop,
 }
 

@@ -76,7 +76,7 @@ fn pilot(spec: &SceneSpec) -> Result<SceneSpec, Failure> {
     Ok(pilot)
 }
 
-/// For each pixel, row by row, whether an emitting surface is the first thing that it shows, in any of 4 x 4
+/// Tells for each pixel, row by row, whether an emitting surface is the first thing that it shows, in any of 4 x 4
 /// points.
 fn emitters_in_pixels<C: Spectrum>(radiant: &Radiant<C>, camera: &Camera) -> Vec<bool> {
     let emits = |pixel: [u32; 2]| {

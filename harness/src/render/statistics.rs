@@ -56,7 +56,7 @@ pub(super) struct Variance {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct ReferenceError {
-    /// Over all pixels and channels.
+    /// Root mean squared error over all pixels and channels.
     pub rmse: f64,
     pub file: String,
 }
@@ -66,9 +66,9 @@ pub(super) struct Cost {
     pub lookups: u64,
     /// Camera rays.
     pub rays: u64,
-    /// By the clock on the wall.
+    /// Seconds by the clock on the wall.
     pub seconds: f64,
-    /// Over all threads.
+    /// CPU seconds over all threads.
     pub cpu_seconds: f64,
 }
 
@@ -84,7 +84,7 @@ pub(super) struct ShownAt {
 /// Virtual point lights, and what compensates for bounding them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct VirtualLights {
-    /// One for each sample per pixel.
+    /// Number of sets, one for each sample per pixel.
     pub sets: u32,
     pub lights_per_set: f64,
     /// CPU seconds of light paths, a part of all.
@@ -109,7 +109,7 @@ pub(super) struct Efficiency {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moments {
     channels: usize,
-    /// Per pixel.
+    /// Samples per pixel.
     samples: u32,
     /// Mean radiance per pixel.
     means: Vec<[f64; 3]>,

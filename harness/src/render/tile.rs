@@ -50,7 +50,7 @@ fn areas([columns, rows]: [u32; 2]) -> Vec<Area> {
 #[derive(Clone, Debug)]
 pub(super) struct Tile<C> {
     pub area: Area,
-    /// Row by row.
+    /// Pixels, row by row.
     pixels: Vec<Pixel<C>>,
     sources: Vec<Seeded>,
 }

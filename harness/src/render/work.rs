@@ -123,7 +123,7 @@ fn in_memory(key: &str, count: f64, what: &str, bytes: usize) -> Result<(), Fail
 
 /// Camera rays in the bounds of the medium.
 struct Chords {
-    /// Their mean length, a ray that misses counted as 0 \[length\].
+    /// Mean length of the chords, a ray that misses counted as 0 \[length\].
     mean: f64,
     /// The share of it that light passes: ∫ T ds over the length.
     passed: f64,
@@ -219,7 +219,7 @@ fn lit_length(profile: &AnyProfile) -> f64 {
 
 /// Look-ups and lights of a few walks.
 struct Walks {
-    /// Per camera path, with all that belongs to it.
+    /// Look-ups per camera path, with all that belongs to it.
     each: f64,
     /// Virtual point lights per light path.
     lights: f64,

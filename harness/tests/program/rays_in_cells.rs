@@ -48,7 +48,7 @@ impl Cloud {
         spec.kind().for_all_rays(&scene, "estimator").unwrap()
     }
 
-    /// In a plane between voxels, along an edge, through corners, and across; each from outside, and from a point inside.
+    /// Rays in a plane between voxels, along an edge, through corners, and across; each from outside, and from a point inside.
     fn rays(&self) -> Vec<Clip> {
         let world = self.medium.lattice().0.world_from_index();
         let (low, high) = self.bounds.corners();

@@ -53,7 +53,7 @@ kind! {
 }
 
 impl LightSpec {
-    /// Its strength; `None` where a picture says it.
+    /// Strength of the light; `None` where a picture says it.
     #[must_use]
     pub fn strength(&self) -> Option<&ColourSpec> {
         match self {

@@ -11,7 +11,7 @@ use glam::DVec3;
 /// A surface as given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceSpec {
-    /// Its shape.
+    /// Shape of the surface.
     pub shape: ShapeSpec,
     /// The material.
     pub material: MaterialSpec,

@@ -8,7 +8,7 @@ use crate::reader::Node;
 /// A medium that scatters, as given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VolumeSpec {
-    /// Its extinction and bounds.
+    /// Extinction and bounds of the medium.
     pub medium: MediumSpec,
     /// σ_s/σ_t.
     pub albedo: ColourSpec,

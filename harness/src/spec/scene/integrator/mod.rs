@@ -34,7 +34,7 @@ registry! {
 
 /// A kind of integrators: its walks, its surfaces, its bias.
 pub trait IntegratorKind {
-    /// Its walks, if it has some.
+    /// Walks of the integrator, if it has some.
     fn walk(&self) -> Option<&WalkSpec> {
         None
     }
