@@ -20,7 +20,7 @@ fn prefix(name: &OsStr, what: &str) -> OsString {
     prefix
 }
 
-/// What makes files and folders with these rights, where a system has them.
+/// Builder of files and folders with these rights, where a system has them.
 #[cfg_attr(not(unix), allow(unused_variables))]
 fn builder(prefix: &OsStr, mode: u32) -> Builder<'_, 'static> {
     let mut builder = Builder::new();

@@ -1,4 +1,4 @@
-//! What is run of an entry of the catalogue.
+//! The part of an entry of the catalogue that is run.
 
 use fairflight_laws::Run;
 use std::fmt::{Debug, Formatter, Result};

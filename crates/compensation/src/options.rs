@@ -19,9 +19,9 @@ pub enum Strategy {
 /// Law of the distance at which a compensation vertex is placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placement {
-    /// By a free flight, which may end beyond the bounding region and is then lost (raab-2008 section 4.2).
+    /// The law of a free flight, which may end beyond the bounding region and is then lost (raab-2008 section 4.2).
     FreeFlight,
-    /// Within the bounding region, as if the medium were homogeneous there (engelhardt-2013 eq. 4 and 5).
+    /// The law within the bounding region as if the medium were homogeneous there (engelhardt-2013 eq. 4 and 5).
     LocallyHomogeneous,
 }
 

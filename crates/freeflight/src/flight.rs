@@ -9,14 +9,14 @@ use fairflight_sources::UniformSource;
 /// flight's business.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flight {
-    /// At a collision with matter inside the profile.
+    /// A collision with matter inside the profile.
     Collided {
         /// The distance from the start of the profile \[length\].
         distance: f64,
         /// Weight that the flight counts with \[1\]; of either sign, 1 for an unweighted sampler.
         weight: f64,
     },
-    /// At the end of the profile.
+    /// The end of the profile.
     Escaped {
         /// Weight that the flight counts with \[1\]; of either sign, 1 for an unweighted sampler.
         weight: f64,

@@ -1,4 +1,4 @@
-//! What the tests of several samplers share.
+//! Common parts of the tests of several samplers.
 
 use crate::ClosedForm;
 use approx::assert_relative_eq;

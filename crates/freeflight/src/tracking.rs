@@ -86,7 +86,7 @@ impl<R: InvertOpticalThickness> Tracking<R> {
         std::array::from_fn(|i| sampling * (transmitted.moment(i as i32 + 1) - 1.0))
     }
 
-    /// Where the moments of a collision are not smooth in r.
+    /// Functions along the ray whose zeros are the places at which the moments of a collision are not smooth in r.
     fn kinks<F>(&self) -> Vec<Along<'_, F, f64>> {
         let distance = |kink: f64| -> Along<'_, F, f64> {
             Box::new(move |_, s, sigma_t| self.at(s, sigma_t).map_or(1.0, |(_, r)| r - kink))

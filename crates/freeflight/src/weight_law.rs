@@ -6,7 +6,7 @@ use fairflight_media::{Extinction, Integral, RayQuadrature, Tolerance};
 /// A function of a field, s and σ_t(s).
 pub(crate) type Along<'a, F, T> = Box<dyn Fn(&F, f64, f64) -> T + 'a>;
 
-/// The law of the weights of a flight. (Closures behind pointers: nobody is in a hurry here, and the quadrature is compiled once.)
+/// The law of the weights of a flight. (Closures behind pointers: they are called seldom, and the quadrature is compiled once.)
 pub enum WeightLaw<'a, F> {
     /// All are 1.
     One,

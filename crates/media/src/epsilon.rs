@@ -16,7 +16,7 @@ pub enum EpsilonError {
 }
 
 impl Epsilon {
-    /// That optical thickness.
+    /// The greatest optical thickness `epsilon` of a stratum.
     ///
     /// # Errors
     /// If `epsilon` is not in (0, 1\].
@@ -28,7 +28,7 @@ impl Epsilon {
         }
     }
 
-    /// Its value.
+    /// The optical thickness \[1\].
     #[inline]
     #[must_use]
     pub fn get(self) -> f64 {

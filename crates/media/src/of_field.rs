@@ -1,4 +1,4 @@
-//! What a wrapper passes on from the field that it wraps.
+//! Traits that a wrapper passes on from the field that it wraps.
 
 /// Implements a trait of a field for a wrapper by what its `field` says.
 macro_rules! of_field {

@@ -1,4 +1,4 @@
-//! What the tests of several fields share.
+//! Common parts of the tests of several fields.
 
 /// Numbers in [0, 1) by a linear congruence.
 pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {

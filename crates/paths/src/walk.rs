@@ -39,16 +39,16 @@ pub const ROULETTE_BELOW: f64 = 1.0 / 256.0;
 /// End of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End<C> {
-    /// It left the medium.
+    /// The particle left the medium.
     Escaped {
-        /// Its direction of travel.
+        /// Direction of travel, of unit length.
         direction: DVec3,
-        /// Its energy relative to that at the start.
+        /// Energy relative to that at the start.
         energy: C,
     },
-    /// It was absorbed, or lost at roulette.
+    /// The particle was absorbed, or lost at roulette.
     Absorbed,
-    /// It met the greatest number of collisions that it was allowed: what it had left is missing, a bias.
+    /// The particle met the greatest number of collisions that it was allowed: what it had left is missing, a bias.
     Truncated,
 }
 
@@ -59,28 +59,28 @@ pub struct ScatteringEvent<C> {
     pub point: DVec3,
     /// The direction of travel before.
     pub incident: DVec3,
-    /// Its energy behind the collision, relative to that at the start.
+    /// Energy behind the collision, relative to that at the start.
     pub energy: C,
 }
 
 /// End of a flight along one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Leg {
-    /// It was scattered.
+    /// The particle was scattered.
     Scattered {
         /// The distance from the start of the ray \[length\].
         s: f64,
         /// The energy behind the collision, by the greatest albedo.
         weight: f64,
     },
-    /// It met the end of the ray.
+    /// The particle met the end of the ray.
     Passed {
         /// The energy left.
         weight: f64,
     },
-    /// It was absorbed, or lost at roulette.
+    /// The particle was absorbed, or lost at roulette.
     Absorbed,
-    /// It met as many collisions as it was allowed.
+    /// The particle met as many collisions as it was allowed.
     Truncated,
 }
 

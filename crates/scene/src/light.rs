@@ -96,7 +96,7 @@ pub struct Lights<C> {
 pub struct Emission<C> {
     /// Start of its path.
     pub origin: DVec3,
-    /// Its direction of travel, of unit length.
+    /// Direction of travel, of unit length.
     pub direction: DVec3,
     /// The power that it carries: that of all its light, if one photon is emitted.
     pub power: C,

@@ -2,7 +2,7 @@
 
 use crate::policy::MAX_DETECTABLE_RELATIVE_BIAS;
 
-/// What a test of goodness of fit says, with the numbers that led to it.
+/// Result of a test of goodness of fit, with the numbers that led to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoodnessOfFit {
     /// True if the samples follow the distribution; `None` = not testable at this N.

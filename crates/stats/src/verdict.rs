@@ -3,9 +3,9 @@
 /// Source of the standard error of the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StandardErrorSource {
-    /// From the moments of the law.
+    /// The moments of the law.
     ClosedForm,
-    /// From the measured variance.
+    /// The measured variance.
     Sample,
 }
 

@@ -13,7 +13,7 @@ use glam::DVec3;
 pub struct TestRay {
     /// σ_t along it.
     pub profile: AnyProfile,
-    /// Its optical thickness.
+    /// Optical thickness of the ray, and how well it is known.
     pub truth: Truth,
     /// The majorant that estimators are given \[1/length\].
     pub majorant: f64,

@@ -6,7 +6,7 @@ use fairflight_vpl::Vpl;
 /// Virtual point lights and photons of a pass, shared by all its tiles.
 #[derive(Clone, Debug)]
 pub(super) struct Batch<C> {
-    /// None for an integrator that does not gather.
+    /// Virtual point lights; none for an integrator that does not gather.
     pub vpls: Vec<Vpl<C>>,
     /// The bound of their geometric term \[1/length²\].
     pub bound: f64,

@@ -72,17 +72,17 @@ impl Rejection {
 /// Evidence by which a twin is rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evident {
-    /// By a wrong mean: the |z| expected at the stated N.
+    /// A wrong mean: the |z| expected at the stated N.
     Mean {
         /// (E\[twin\] − T)/standard error of the right estimator.
         z: f64,
     },
-    /// By a wrong variance: the |z| expected at the stated N.
+    /// A wrong variance: the |z| expected at the stated N.
     Variance {
         /// (right − wrong variance)/standard error of the wrong one.
         z: f64,
     },
-    /// By an exact assertion.
+    /// An exact assertion.
     Exactly,
 }
 

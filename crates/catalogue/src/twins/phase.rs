@@ -7,7 +7,7 @@ use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{PhaseFunction, Scattered};
 use glam::DVec3;
 
-/// Its scattered direction is about the direction back to where the particle came from.
+/// A phase function whose scattered direction is about the direction back to where the particle came from.
 struct Reversed(HenyeyGreenstein);
 
 impl PhaseFunction for Reversed {

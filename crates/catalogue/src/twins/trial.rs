@@ -23,7 +23,7 @@ pub(super) fn judged<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f 
     judged_with_scores(field, twin, (theory, |_| Scores::Unbounded), run)
 }
 
-/// As [`judged`], with the scores that the estimator can have for a transmittance.
+/// Judges as [`judged`], with the scores that the estimator can have for a transmittance.
 pub(super) fn judged_with_scores<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
     field: &F,
     twin: &E,

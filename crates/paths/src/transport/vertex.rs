@@ -26,7 +26,7 @@ pub enum Lobe {
         /// The surface.
         surface: usize,
     },
-    /// By the phase function of the medium.
+    /// The phase function of the medium.
     Phase {
         /// The direction in which the path arrived, of unit length.
         incident: DVec3,

@@ -54,21 +54,21 @@ impl<
 /// End of a particle's flight along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<C> {
-    /// It was scattered in the medium.
+    /// The particle was scattered in the medium.
     Scattered {
         /// The vertex at which it was scattered.
         vertex: Vertex,
-        /// Its energy behind the collision, relative to that at the start; the expected energy per length is σ_s T.
+        /// Energy behind the collision, relative to that at the start; the expected energy per length is σ_s T.
         energy: C,
     },
-    /// It met the end of the segment.
+    /// The particle met the end of the segment.
     Passed {
-        /// Its energy; on average the transmittance T.
+        /// Energy relative to that at the start; on average the transmittance T.
         weight: f64,
     },
-    /// It was absorbed, or lost at roulette.
+    /// The particle was absorbed, or lost at roulette.
     Absorbed,
-    /// It met as many collisions as it was allowed: a bias.
+    /// The particle met as many collisions as it was allowed: a bias.
     Truncated,
 }
 

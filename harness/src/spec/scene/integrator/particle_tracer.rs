@@ -18,9 +18,9 @@ kind! {
 /// The particles: from the camera, or from the lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Particles {
-    /// From the camera.
+    /// Particles from the camera.
     Importons,
-    /// From the lights.
+    /// Particles from the lights.
     Photons,
 }
 
