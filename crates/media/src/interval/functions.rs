@@ -9,7 +9,7 @@ use super::{Interval, down, up};
 /// Units in the last place by which an elementary function may be off.
 const WIDENING: f64 = 4.0;
 
-/// Argument of sine and cosine beyond which the phase is known too badly to tell a quarter of a turn.
+/// Argument of a trigonometric function beyond which the phase is known too badly to tell a quarter of a turn.
 const LARGEST_PHASE: f64 = 1e15;
 
 /// π lies between these two doubles.
