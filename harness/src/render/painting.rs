@@ -55,7 +55,7 @@ impl<'p> Painting<'p> {
     /// Adds all samples that are missing: in one pass, unless the integrator has a batch for each.
     ///
     /// # Errors
-    /// Those of [`add_pass`](Self::add_pass).
+    /// The errors of [`add_pass`](Self::add_pass).
     pub(crate) fn complete(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
         let batches = self.plan.integrator.draws_in_batches();
         while !self.is_complete() {
