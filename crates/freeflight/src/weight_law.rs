@@ -8,11 +8,11 @@ pub(crate) type Along<'a, F, T> = Box<dyn Fn(&F, f64, f64) -> T + 'a>;
 
 /// The law of the weights of a flight. (Closures behind pointers: they are called seldom, and the quadrature is compiled once.)
 pub enum WeightLaw<'a, F> {
-    /// All are 1.
+    /// Weights of 1.
     One,
-    /// N for one flight in N, drawn at random, 0 for the others.
+    /// Weights of N for one flight in N, drawn at random, of 0 for the others.
     OneIn(usize),
-    /// Only their mean has a closed form, that of the law; the higher moments are NaN.
+    /// Weights whose mean alone has a closed form, that of the law; the higher moments are NaN.
     MeanOnly,
     /// Products over events that do not depend on the past.
     Products(WeightProducts<'a, F>),
@@ -22,7 +22,7 @@ pub enum WeightLaw<'a, F> {
 pub struct WeightProducts<'a, F> {
     /// Functions that pass 0 where the others are not smooth.
     pub(crate) kinks: Vec<Along<'a, F, f64>>,
-    /// d ln M_k/ds.
+    /// Rate d ln M_k/ds.
     pub(crate) growth: Along<'a, F, Moments>,
     /// The moments per length of weight times score of collisions.
     pub(crate) collided: Collided<'a, F>,

@@ -7,10 +7,10 @@ pub struct Epsilon(f64);
 /// A reason why strata cannot have this optical thickness.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum EpsilonError {
-    /// Infinitely many strata.
+    /// Strata without optical thickness, of which there would be infinitely many.
     #[error("epsilon must be positive, found {0}")]
     NotPositive(f64),
-    /// The optical thickness of a part of a stratum would be no probability.
+    /// Strata whose optical thickness is no probability.
     #[error("epsilon must not exceed 1, found {0}")]
     AboveOne(f64),
 }

@@ -50,7 +50,7 @@ fn upper_quantile(degrees_of_freedom: usize, tail: f64) -> f64 {
 /// Neighbouring cells are pooled until each is expected often enough for the limit law to hold at `alpha`: order them so
 /// that neighbours belong together. `detectable` is the relative deviation of the probability of one (pooled) cell, all
 /// others shrinking or growing in proportion, at worst over the cells. As in [`judge`](crate::judge()), agreement needs power:
-/// with a detectable deviation of [`MAX_DETECTABLE_RELATIVE_BIAS`] or more, or with one cell left, nothing is accepted.
+/// with a detectable deviation of [`MAX_DETECTABLE_RELATIVE_BIAS`](crate::MAX_DETECTABLE_RELATIVE_BIAS) or more, or with one cell left, nothing is accepted.
 /// Relative errors of the probabilities must be small against 1/√N.
 ///
 /// A count where the probability is zero: unsound. No samples, or probabilities that are none: not testable.

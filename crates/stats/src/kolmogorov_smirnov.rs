@@ -12,7 +12,7 @@ use crate::policy::POWER;
 ///
 /// `detectable` is a distance of distribution functions \[1\]: if the true one is Δ away somewhere, D exceeds Δ less its
 /// own fluctuation, which the same bound limits. Agreement needs a detectable distance below
-/// [`MAX_DETECTABLE_RELATIVE_BIAS`], half of all probability in a wrong place. A sample or a value of the function that is no
+/// [`MAX_DETECTABLE_RELATIVE_BIAS`](crate::MAX_DETECTABLE_RELATIVE_BIAS), half of all probability in a wrong place. A sample or a value of the function that is no
 /// number, or a probability outside \[0, 1\]: unsound. No samples: not testable.
 #[must_use]
 pub fn kolmogorov_smirnov(

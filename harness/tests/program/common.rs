@@ -41,7 +41,7 @@ pub(crate) fn fixture(name: &str) -> String {
     format!("{}/../tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The same without what the clock and the command line say.
+/// Statistics without what the clock and the command line say.
 pub(crate) fn timeless(mut statistics: Value) -> Value {
     for (part, key) in [
         ("cost", "seconds"),
