@@ -149,7 +149,10 @@ pub fn compare(
         scores: plan.estimator.scores(unit),
         ..Reference::exact(closed.mean)
     };
-    let verdict = judge(&measurement.moments.scaled(unit.scale()), &reference, alpha);
+    let mut verdict = judge(&measurement.moments.scaled(unit.scale()), &reference, alpha);
+    if let (None, Some(unreached)) = (verdict.sound, prediction.theory.unreached) {
+        verdict.reason.push_str(&format!("; {unreached}"));
+    }
     Comparison { unit, closed, verdict }
 }
 
@@ -261,6 +264,9 @@ fn method(plan: &Plan, truth: &Truth, prediction: &Prediction, known: bool) -> S
     }
     if truth.transmittance() == 0.0 {
         method.push_str("; the transmittance underflows to 0 in double precision");
+    }
+    if let Some(unreached) = prediction.theory.unreached {
+        method.push_str(&format!("; {unreached}"));
     }
     if prediction.theory.relative_variance_error > DIVERGENCE {
         method.push_str(

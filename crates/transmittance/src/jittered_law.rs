@@ -14,6 +14,7 @@
 //! from the order where p has no weight left down to 2, and F − exp(−R) = −e V at last. Everything is a deviation from a mean:
 //! a small variance keeps its digits.
 
+use crate::allowance::{Allowance, NODES};
 use crate::factors::{BINOMIALS, FactorLaw, compound, powers};
 use crate::jittered_ratio::Strata;
 use crate::{HIGHEST_MOMENT, MOMENTS, Theory};
@@ -27,6 +28,9 @@ struct Part {
     thickness: f64,
 }
 
+/// Nodes of a stratum, each sampled once and evaluated twice, and as much again for its recursion.
+const PER_STRATUM: f64 = 6.0 * NODES;
+
 /// The law of the product over the strata of all `cells`, which cover the profile.
 pub(crate) fn theory_of<F: Extinction>(
     cells: &[BoundCell],
@@ -34,6 +38,11 @@ pub(crate) fn theory_of<F: Extinction>(
     quadrature: &mut RayQuadrature<F>,
     tolerance: Tolerance,
 ) -> Theory {
+    let allowance = Allowance::usual();
+    let (strata, expected) = count(cells, epsilon);
+    if !allowance.has(PER_STRATUM * strata) {
+        return Theory::without(allowance.unreached(2), expected);
+    }
     let (parts, ends) = parts_of(cells, epsilon);
     let ratio = |i: usize, sigma_t: f64| (sigma_t - parts[i].minorant) / parts[i].range;
     let (means, _) = quadrature.integrate_parts(tolerance, &ends, |i, _, sigma_t| {
@@ -58,13 +67,25 @@ pub(crate) fn theory_of<F: Extinction>(
     let greatest = parts.iter().map(|part| part.thickness * part.thickness.exp()).fold(0.0, f64::max);
     let error = greatest * greatest * total.error[0];
     Theory {
-        relative_mean: 1.0,
         relative_central: law.relative_central(),
         log_relative_variance: law.log_relative_variance(),
         relative_variance_error: if error == 0.0 { 0.0 } else { error / -(-law.log_second()).exp_m1() },
-        relative_variance_bound: f64::INFINITY,
-        lookups,
+        ..Theory::mean_only(lookups)
     }
+}
+
+/// The number of strata, a cell without any as one, and the expected look-ups.
+fn count(cells: &[BoundCell], epsilon: Epsilon) -> (f64, f64) {
+    let (mut strata, mut lookups, mut from) = (0.0, 0.0, 0.0);
+    for cell in cells {
+        let Strata { count, thickness, .. } = Strata::of(cell, from, epsilon);
+        strata += count.max(1.0);
+        if thickness > 0.0 {
+            lookups += count * (thickness.exp_m1() / thickness);
+        }
+        from = cell.to;
+    }
+    (strata, lookups)
 }
 
 /// The strata of all cells, a cell without any as itself; and where each ends.

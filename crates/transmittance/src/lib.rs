@@ -43,6 +43,7 @@
 
 mod adaptive_law;
 mod adaptive_ratio;
+mod allowance;
 mod bidirectional;
 mod combs;
 mod estimator;
@@ -91,6 +92,6 @@ pub use ray_marching::{NoSteps, Offset, RayMarching};
 pub use regular::Regular;
 pub use residual_cells::{RateError, ResidualCells};
 pub use signed_product::SignedProduct;
-pub use theory::{ClosedForm, Theory, theory_on};
+pub use theory::{ClosedForm, Theory, Unreached, theory_on};
 pub use tracking::Tracking;
 pub use woodcock::Woodcock;

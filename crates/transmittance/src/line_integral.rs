@@ -1,8 +1,9 @@
 //! Raab, Seibert & Keller's line integral (raab-2008 algorithm 2), for transmittance and for any other integral along a ray.
 
+use crate::allowance::Allowance;
 use crate::woodcock::{collides, expected_lookups};
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
-use fairflight_media::{Breakpoints, Cumulative, Majorant, RayQuadrature, Tolerance, adaptive_integral};
+use fairflight_media::{Breakpoints, Cumulative, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
 /// n Woodcock flights whose first collisions are stratified by one random shift and conditioned to lie on the profile.
@@ -149,15 +150,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         let p_volume = collision_probability(quadrature.field());
         let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
         if p_volume == 0.0 {
-            relative_central = [0.0; HIGHEST_MOMENT - 1];
-            return Theory {
-                relative_mean: 1.0,
-                relative_central,
-                log_relative_variance: f64::NEG_INFINITY,
-                relative_variance_error: 0.0,
-                relative_variance_bound: f64::INFINITY,
-                lookups: 0.0,
-            };
+            return Theory::exact();
         }
         let n = f64::from(self.splits);
         let lookups = n * expected_lookups(quadrature, tolerance) / p_volume;
@@ -173,21 +166,23 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         // E[number of escapes] = n (T − p_S) / p_V
         let mean = n * (transmittance - (1.0 - p_volume)) / p_volume;
         let breaks: Vec<f64> = field.breakpoints().iter().map(|&t| (n * escape.variate(t)).fract()).collect();
-        let moments = adaptive_integral(1.0, &breaks, tolerance, |shift| {
+        let allowance = Allowance::usual();
+        let moments = allowance.integral(&breaks, tolerance, n, |shift| {
             let probabilities = (0..self.splits).map(|k| escape.probability((f64::from(k) + shift) / n));
             moments_about(mean, &coin_cumulants(probabilities))
         });
+        let Some(moments) = moments else {
+            return Theory::without(allowance.unreached(2), lookups);
+        };
         let unit = p_volume / n / transmittance;
         for (k, moment) in moments.value.into_iter().enumerate() {
             relative_central[k] = moment * unit.powi(k as i32 + 2);
         }
         Theory {
-            relative_mean: 1.0,
             relative_central,
             log_relative_variance: relative_central[0].ln(),
             relative_variance_error: moments.error[0] / moments.value[0],
-            relative_variance_bound: f64::INFINITY,
-            lookups,
+            ..Theory::mean_only(lookups)
         }
     }
 }

@@ -57,8 +57,7 @@ impl ProductLaw {
             relative_central: self.relative_central(),
             log_relative_variance: self.log_relative_variance(),
             relative_variance_error: error / -(-self.integrals[0]).exp_m1(),
-            relative_variance_bound: f64::INFINITY,
-            lookups,
+            ..Theory::mean_only(lookups)
         }
     }
 

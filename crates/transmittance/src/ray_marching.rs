@@ -1,7 +1,8 @@
 //! Ray marching: the exponential of a Riemann sum (perlin-1989). **Biased**, and labelled so wherever it appears.
 
-use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
-use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
+use crate::allowance::Allowance;
+use crate::{ClosedForm, MOMENTS, Theory, TransmittanceEstimator};
+use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use std::cell::Cell;
 
@@ -72,42 +73,59 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
         let relative = |offset: f64| (tau - self.thickness(field, offset)).exp();
         let lookups = f64::from(self.steps);
         if self.offset == Offset::Fixed || field.length() == 0.0 {
-            return Theory {
-                relative_mean: relative(0.5),
-                relative_central: [0.0; HIGHEST_MOMENT - 1],
-                log_relative_variance: f64::NEG_INFINITY,
-                relative_variance_error: 0.0,
-                relative_variance_bound: f64::INFINITY,
-                lookups,
-            };
+            return Theory { relative_mean: relative(0.5), lookups, ..Theory::exact() };
         }
+        let allowance = Allowance::usual();
+        self.jittered((&allowance, field), tau, tolerance)
+            .unwrap_or_else(|| Theory::without(allowance.unreached(1), lookups))
+    }
+}
+
+impl RayMarching {
+    /// The law with random offsets, if its quadratures are within the allowance.
+    fn jittered<F: Breakpoints>(
+        &self,
+        (allowance, field): (&Allowance, &F),
+        tau: f64,
+        tolerance: Tolerance,
+    ) -> Option<Theory> {
+        let relative = |offset: f64| (tau - self.thickness(field, offset)).exp();
+        let lookups = f64::from(self.steps);
         let steps = lookups / field.length();
         let breaks: Vec<f64> = field.breakpoints().iter().map(|s| (s * steps).fract()).collect();
         let greatest = Cell::new(f64::NEG_INFINITY);
-        let mean = adaptive_integral(1.0, &breaks, tolerance, |offset| {
+        let mean = allowance.integral(&breaks, tolerance, lookups, |offset| {
             let exponent = tau - self.thickness(field, offset);
             greatest.set(greatest.get().max(exponent));
             [exponent.exp()]
-        });
+        })?;
         if greatest.get() > MOST_EXPONENT {
             let exponent = |offset: f64| tau - self.thickness(field, offset);
-            return of_great_exponents((&breaks, tolerance), greatest.get(), &exponent, lookups);
+            return of_great_exponents((&breaks, tolerance), greatest.get(), &exponent, (lookups, allowance));
+        }
+        if mean.error[0] > UNKNOWN * mean.value[0] {
+            return None;
         }
         let mean = mean.value[0];
-        let central = adaptive_integral(1.0, &breaks, tolerance, |offset| -> [f64; HIGHEST_MOMENT - 1] {
+        let central = allowance.integral(&breaks, tolerance, lookups, |offset| -> [f64; MOMENTS] {
             let deviation = relative(offset) - mean;
             std::array::from_fn(|i| deviation.powi(i as i32 + 2))
         });
-        Theory {
+        let Some(central) = central else {
+            return Some(Theory { relative_mean: mean, ..Theory::without(allowance.unreached(2), lookups) });
+        };
+        Some(Theory {
             relative_mean: mean,
             relative_central: central.value,
             log_relative_variance: central.value[0].ln(),
             relative_variance_error: central.error[0] / central.value[0],
-            relative_variance_bound: f64::INFINITY,
-            lookups,
-        }
+            ..Theory::mean_only(lookups)
+        })
     }
 }
+
+/// A mean with a relative error above this is not known.
+const UNKNOWN: f64 = 1e-2;
 
 /// Exponent from which on estimates are taken in units of the greatest: their eighth powers would overflow, and soon they themselves.
 const MOST_EXPONENT: f64 = 80.0;
@@ -120,35 +138,39 @@ fn of_great_exponents(
     (breaks, tolerance): (&[f64], Tolerance),
     greatest: f64,
     exponent: &dyn Fn(f64) -> f64,
-    lookups: f64,
-) -> Theory {
+    (lookups, allowance): (f64, &Allowance),
+) -> Option<Theory> {
     let tolerance = Tolerance { absolute: 0.0, ..tolerance };
     let found = Cell::new(greatest);
     let (mut greatest, mut mean) = (greatest, f64::NAN);
     // Finer nodes may find greater ones: beyond 709 more they overflow, and are the new unit.
     for _ in 0..MOST_ROUNDS {
         greatest = found.get();
-        let integral = adaptive_integral(1.0, breaks, tolerance, |offset| {
+        let integral = allowance.integral(breaks, tolerance, lookups, |offset| {
             let exponent = exponent(offset);
             found.set(found.get().max(exponent));
             [(exponent - greatest).exp()]
-        });
+        })?;
         mean = integral.value[0];
         if mean.is_finite() {
             break;
         }
     }
-    let central = adaptive_integral(1.0, breaks, tolerance, |offset| -> [f64; HIGHEST_MOMENT - 1] {
+    let central = allowance.integral(breaks, tolerance, lookups, |offset| -> [f64; MOMENTS] {
         let deviation = (exponent(offset) - greatest).exp() - mean;
         std::array::from_fn(|i| deviation.powi(i as i32 + 2))
     });
+    let relative_mean = (greatest + mean.ln()).exp();
+    let Some(central) = central else {
+        return Some(Theory { relative_mean, ..Theory::without(allowance.unreached(2), lookups) });
+    };
     let log = |i: usize| central.value[i].abs().ln() + (i as f64 + 2.0) * greatest;
     let moment = |i: usize| central.value[i].signum() * log(i).exp();
-    Theory {
-        relative_mean: (greatest + mean.ln()).exp(),
+    Some(Theory {
+        relative_mean,
         relative_central: std::array::from_fn(|i| if central.value[i] == 0.0 { 0.0 } else { moment(i) }),
         log_relative_variance: log(0),
         relative_variance_error: central.error[0] / central.value[0],
         ..Theory::mean_only(lookups)
-    }
+    })
 }

@@ -115,13 +115,13 @@ impl<F: BoundedInCells> ClosedForm<F> for ResidualCells {
         let widths: Vec<f64> = cells.iter().map(width).collect();
         let law = ProductLaw::new(collisions.value);
         Theory {
-            relative_mean: 1.0,
             relative_central: law.relative_central(),
             log_relative_variance: law.log_relative_variance(),
             // d Var / Var = dJ_2 exp(J_2) / (exp(J_2) − 1)
             relative_variance_error: collisions.error[0] / -(-collisions.value[0]).exp_m1(),
-            relative_variance_bound: f64::INFINITY,
-            lookups: cells.iter().zip(widths).map(|(cell, width)| self.rate * cell.range() * width).sum(),
+            ..Theory::mean_only(
+                cells.iter().zip(widths).map(|(cell, width)| self.rate * cell.range() * width).sum(),
+            )
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::HIGHEST_MOMENT;
 use fairflight_media::{Breakpoints, Extinction, OpticalThickness, RayQuadrature, Tolerance};
+use std::fmt;
 
 /// The law of one estimate on one profile, in units of the transmittance T, so that nothing underflows with T.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +20,28 @@ pub struct Theory {
     pub relative_variance_bound: f64,
     /// The expected number of look-ups of one estimate.
     pub lookups: f64,
+    /// The lowest moment that has a closed form and would have taken too many look-ups.
+    pub unreached: Option<Unreached>,
+}
+
+/// A moment in closed form whose quadratures take more look-ups than they may spend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unreached {
+    /// Its order: 1 for the mean, 2 for the variance.
+    pub moment: u32,
+    /// Look-ups that were made before it was given up.
+    pub lookups: f64,
+}
+
+impl fmt::Display for Unreached {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let moment = match self.moment {
+            1 => "mean",
+            2 => "variance",
+            _ => "third moment",
+        };
+        write!(f, "the {moment} in closed form was not reached with {:.1e} look-ups", self.lookups)
+    }
 }
 
 impl Theory {
@@ -32,6 +55,7 @@ impl Theory {
             relative_variance_error: 0.0,
             relative_variance_bound: f64::INFINITY,
             lookups: 0.0,
+            unreached: None,
         }
     }
 
@@ -46,7 +70,14 @@ impl Theory {
             relative_variance_error: f64::NAN,
             relative_variance_bound: f64::INFINITY,
             lookups,
+            unreached: None,
         }
+    }
+
+    /// An estimate of which nothing is known from a moment on; the mean of one that is not unbiased is NaN.
+    pub(crate) fn without(unreached: Unreached, lookups: f64) -> Self {
+        let relative_mean = if unreached.moment == 1 { f64::NAN } else { 1.0 };
+        Self { relative_mean, unreached: Some(unreached), ..Self::mean_only(lookups) }
     }
 }
 

@@ -66,12 +66,10 @@ impl<F: Majorant> ClosedForm<F> for Woodcock {
         // E[(W − 1)^j] = (−1)^j r, so that J_j = (−1)^j tau.
         let law = ProductLaw::new(std::array::from_fn(|i| if i % 2 == 0 { tau } else { -tau }));
         Theory {
-            relative_mean: 1.0,
             relative_central: law.relative_central(),
             log_relative_variance: law.log_relative_variance(),
             relative_variance_error: 0.0,
-            relative_variance_bound: f64::INFINITY,
-            lookups: expected_lookups(quadrature, tolerance),
+            ..Theory::mean_only(expected_lookups(quadrature, tolerance))
         }
     }
 }

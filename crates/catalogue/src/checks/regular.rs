@@ -90,8 +90,7 @@ impl<F: Extinction> ClosedForm<F> for FirstEstimate {
             relative_central,
             log_relative_variance: law.log_relative_variance() + 2.0 * relative_mean.ln(),
             relative_variance_error: factors.error[0],
-            relative_variance_bound: f64::INFINITY,
-            lookups: lookups_of_a_walk(quadrature, tolerance, &self.rates())[0],
+            ..Theory::mean_only(lookups_of_a_walk(quadrature, tolerance, &self.rates())[0])
         }
     }
 }

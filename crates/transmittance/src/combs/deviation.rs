@@ -1,7 +1,8 @@
 //! The law of one draw of a comb: integrals over its variate.
 
 use super::{Comb, Prepared};
-use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance, adaptive_integral};
+use crate::allowance::Allowance;
+use fairflight_media::{Breakpoints, Extinction, Integral, RayQuadrature, Tolerance};
 
 /// Mean and cumulants of X(u), one draw of a comb: what bias and variance of every estimate of exp(−X) are made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +18,7 @@ pub struct CombCumulants {
 }
 
 impl Comb {
-    /// The cumulants of X(u) on `from ≤ s ≤ to`, by quadrature over u: a reference, not an estimate.
+    /// The cumulants of X(u) on `from ≤ s ≤ to`, by quadrature over u: a reference, not an estimate. NaN where they take too many look-ups.
     pub fn cumulants<F: Breakpoints>(
         &self,
         field: &F,
@@ -26,7 +27,10 @@ impl Comb {
         tolerance: Tolerance,
     ) -> CombCumulants {
         let prepared = self.prepare(field, from, to);
-        DeviationLaw::new(self, field, &prepared, tolerance).cumulants()
+        let allowance = Allowance::usual();
+        DeviationLaw::new((self, field, &prepared), tolerance, &allowance)
+            .and_then(|mut law| law.cumulants())
+            .unwrap_or(CombCumulants { mean: f64::NAN, k2: f64::NAN, k3: f64::NAN, k4: f64::NAN })
     }
 }
 
@@ -36,10 +40,12 @@ struct Deviation<'a, F> {
     field: &'a F,
     prepared: &'a Prepared,
     mean: f64,
+    allowance: &'a Allowance,
 }
 
 impl<F: Extinction> Extinction for Deviation<'_, F> {
     fn sigma_t(&self, u: f64) -> f64 {
+        self.allowance.spend(f64::from(self.comb.teeth()));
         self.mean - self.comb.thickness(self.field, self.prepared, u)
     }
     fn length(&self) -> f64 {
@@ -54,7 +60,7 @@ impl<F: Breakpoints> Breakpoints for Deviation<'_, F> {
 }
 
 /// Expectations of functions of D. Powers are those of x = D/max |D|, which are at most 1: their integrals are as
-/// exact as they need to be at any order.
+/// exact as they need to be at any order. What is `None` is beyond the allowance.
 pub(super) struct DeviationLaw<'a, F> {
     quadrature: RayQuadrature<Deviation<'a, F>>,
     mean: f64,
@@ -68,31 +74,55 @@ pub(super) struct DeviationLaw<'a, F> {
 /// What rounding leaves of a comb's sum, per unit of 1 + its thickness.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Look-ups that one quadrature may spend.
-const MOST_LOOKUPS: f64 = 3e7;
-
 impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
-    pub(super) fn new(comb: &'a Comb, field: &'a F, prepared: &'a Prepared, tolerance: Tolerance) -> Self {
-        let affordable = (MOST_LOOKUPS / 21.0 / f64::from(comb.teeth())) as usize;
-        let tolerance = Tolerance { most_panels: tolerance.most_panels.min(affordable), ..tolerance };
+    pub(super) fn new(
+        (comb, field, prepared): (&'a Comb, &'a F, &'a Prepared),
+        tolerance: Tolerance,
+        allowance: &'a Allowance,
+    ) -> Option<Self> {
+        let teeth = f64::from(comb.teeth());
         let breaks = comb.folded_breakpoints(field, prepared);
-        let mean = adaptive_integral(1.0, &breaks, tolerance, |u| [comb.thickness(field, prepared, u)]);
+        let mean = allowance.integral(&breaks, tolerance, teeth, |u| [comb.thickness(field, prepared, u)])?;
+        let mean_error = if mean.converged { 0.0 } else { mean.error[0] };
         let mean = mean.value[0];
-        let mut quadrature = RayQuadrature::new(Deviation { comb, field, prepared, mean }, &[]);
+        // Its nodes are those between the breakpoints.
+        allowance.tolerance(tolerance, teeth, breaks.len() + 1)?;
+        let deviation = Deviation { comb, field, prepared, mean, allowance };
+        let quadrature = RayQuadrature::new(deviation, &[]);
+        let mut law = Self { quadrature, mean, unit: 0.0, k2: 0.0, relative_error: 0.0, tolerance };
         // Below the rounding of a comb's sum its variance is no variance; above, D itself has only so many digits.
         let noise = ROUNDING * (1.0 + mean.abs());
         let coarse = Tolerance { absolute: noise * noise, relative: 1e-3, ..tolerance };
-        let rough = quadrature.integrate(coarse, |_, d| [d * d]).value[0];
+        let rough = law.integrate(coarse, |_, d| [d * d])?.value[0];
         if rough <= noise * noise {
-            return Self { quadrature, mean, unit: 0.0, k2: 0.0, relative_error: 0.0, tolerance };
+            return Some(law);
         }
         let exactness = tolerance.relative.max(8.0 * noise / rough.sqrt());
         let fine = Tolerance { absolute: 0.0, relative: exactness, ..tolerance };
-        let k2 = quadrature.integrate(fine, |_, d| [d * d]);
-        let unit = quadrature.nodes().fold(0.0_f64, |greatest, (_, d)| greatest.max(d.abs()));
-        let tolerance = Tolerance { absolute: exactness, relative: exactness, ..tolerance };
-        let (k2, relative_error) = (k2.value[0], k2.error[0] / k2.value[0]);
-        Self { quadrature, mean, unit, k2, relative_error, tolerance }
+        let k2 = law.integrate(fine, |_, d| [d * d])?;
+        law.unit = law.quadrature.nodes().fold(0.0_f64, |greatest, (_, d)| greatest.max(d.abs()));
+        law.tolerance = Tolerance { absolute: exactness, relative: exactness, ..tolerance };
+        law.k2 = k2.value[0];
+        // E[D²] about another centre is greater by the square of what lies between.
+        law.relative_error = (k2.error[0] + mean_error * mean_error) / law.k2;
+        Some(law)
+    }
+
+    /// ∫ g(u, D), with the error of what the allowance suffices for.
+    fn integrate<const K: usize>(
+        &mut self,
+        tolerance: Tolerance,
+        g: impl Fn(f64, f64) -> [f64; K],
+    ) -> Option<Integral<K>> {
+        let Deviation { allowance, comb, .. } = *self.quadrature.field();
+        let (teeth, panels) = (f64::from(comb.teeth()), self.quadrature.borders().count() + 1);
+        // At the nodes that there are, an integrand is all that is evaluated.
+        allowance.tolerance(tolerance, 1.0, panels)?;
+        let tolerance = allowance.tolerance(tolerance, teeth, 0)?;
+        Some(self.quadrature.integrate(tolerance, |u, d| {
+            allowance.spend(1.0);
+            g(u, d)
+        }))
     }
 
     /// max |D|; 0 for a comb without variance.
@@ -110,25 +140,24 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
         self.k2
     }
 
-    /// The error of k2, relative to it.
+    /// The error of k2, relative to it, or that of an expectation which has not converged.
     pub(super) fn relative_error(&self) -> f64 {
         self.relative_error
     }
 
-    pub(super) fn cumulants(&mut self) -> CombCumulants {
+    pub(super) fn cumulants(&mut self) -> Option<CombCumulants> {
         let Self { mean, unit, k2, .. } = *self;
         if unit == 0.0 {
-            return CombCumulants { mean, k2: 0.0, k3: 0.0, k4: 0.0 };
+            return Some(CombCumulants { mean, k2: 0.0, k3: 0.0, k4: 0.0 });
         }
-        let [third, fourth] = self.expect(|_, x| [x * x * x, x * x * x * x]);
+        let [third, fourth] = self.expect(|_, x| [x * x * x, x * x * x * x])?;
         // D = E[X] − X: odd moments change their sign.
-        CombCumulants { mean, k2, k3: -third * unit.powi(3), k4: fourth * unit.powi(4) - 3.0 * k2 * k2 }
+        Some(CombCumulants { mean, k2, k3: -third * unit.powi(3), k4: fourth * unit.powi(4) - 3.0 * k2 * k2 })
     }
 
     /// E\[g(D, x)\], x = D/max |D|; for a comb with a variance.
-    pub(super) fn expect<const K: usize>(&mut self, g: impl Fn(f64, f64) -> [f64; K]) -> [f64; K] {
-        let scale = 1.0 / self.unit;
-        self.quadrature.integrate(self.tolerance, |_, d| g(d, d * scale)).value
+    pub(super) fn expect<const K: usize>(&mut self, g: impl Fn(f64, f64) -> [f64; K]) -> Option<[f64; K]> {
+        self.expect_to(self.tolerance, g)
     }
 
     /// As [`expect`](Self::expect), of numbers of any size: exact relative to themselves or to `size`, whichever is greater.
@@ -136,14 +165,30 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
         &mut self,
         size: f64,
         g: impl Fn(f64, f64) -> [f64; K],
-    ) -> [f64; K] {
-        let (scale, relative) = (1.0 / self.unit, self.tolerance.relative);
-        let tolerance = Tolerance { absolute: relative * size, ..self.tolerance };
-        self.quadrature.integrate(tolerance, |_, d| g(d, d * scale)).value
+    ) -> Option<[f64; K]> {
+        let tolerance = Tolerance { absolute: self.tolerance.relative * size, ..self.tolerance };
+        self.expect_to(tolerance, g)
+    }
+
+    fn expect_to<const K: usize>(
+        &mut self,
+        tolerance: Tolerance,
+        g: impl Fn(f64, f64) -> [f64; K],
+    ) -> Option<[f64; K]> {
+        let scale = 1.0 / self.unit;
+        let found = self.integrate(tolerance, |_, d| g(d, d * scale))?;
+        if !found.converged {
+            // What is made of powers of x is compared with E[x²], what is greater with itself.
+            let square = self.k2 * scale * scale;
+            let relative =
+                found.value.iter().zip(found.error).map(|(value, error)| error / (square + value.abs()));
+            self.relative_error = relative.fold(self.relative_error, f64::max);
+        }
+        Some(found.value)
     }
 
     /// E\[x^p g(D)\] for p = 0 … `highest`.
-    pub(super) fn moments(&mut self, highest: usize, g: impl Fn(f64) -> f64) -> Vec<f64> {
+    pub(super) fn moments(&mut self, highest: usize, g: impl Fn(f64) -> f64) -> Option<Vec<f64>> {
         const BATCH: usize = 8;
         let mut moments = Vec::with_capacity(highest + BATCH);
         while moments.len() <= highest {
@@ -154,9 +199,9 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
                     let next = power * x;
                     std::mem::replace(&mut power, next)
                 })
-            }));
+            })?);
         }
-        moments
+        Some(moments)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::deviation::DeviationLaw;
 use super::{Comb, CombCumulants};
+use crate::allowance::Allowance;
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -58,20 +59,27 @@ impl<F: Extinction> TransmittanceEstimator<F> for Jackknife {
 impl<F: Breakpoints> ClosedForm<F> for Jackknife {
     /// Mean, variance and look-ups; the higher central moments are not worked out.
     fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
-        let field = quadrature.field();
-        let prepared = self.comb.prepare(field, 0.0, field.length());
-        let mut law = DeviationLaw::new(&self.comb, field, &prepared, tolerance);
+        let allowance = Allowance::usual();
         let lookups = self.comb.lookups();
         let lookups = f64::from(lookups.shared) + 2.0 * f64::from(lookups.per_draw);
+        self.theory_within(&allowance, quadrature.field(), tolerance, lookups)
+            .unwrap_or_else(|| Theory::without(allowance.unreached(1), lookups))
+    }
+}
+
+impl Jackknife {
+    /// The law, if its quadratures are within the allowance.
+    fn theory_within<F: Breakpoints>(
+        &self,
+        allowance: &Allowance,
+        field: &F,
+        tolerance: Tolerance,
+        lookups: f64,
+    ) -> Option<Theory> {
+        let prepared = self.comb.prepare(field, 0.0, field.length());
+        let mut law = DeviationLaw::new((&self.comb, field, &prepared), tolerance, allowance)?;
         if law.unit() == 0.0 {
-            return Theory {
-                relative_mean: 1.0,
-                relative_central: [0.0; HIGHEST_MOMENT - 1],
-                log_relative_variance: f64::NEG_INFINITY,
-                relative_variance_error: 0.0,
-                relative_variance_bound: f64::INFINITY,
-                lookups,
-            };
+            return Some(Theory { lookups, ..Theory::exact() });
         }
         if law.greatest() > MOST_EXPONENT {
             return of_great_deviations(&mut law, lookups);
@@ -82,7 +90,7 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
             let [half_re, half_im] = exp_m1_of_diagonal(0.5 * d);
             let [full_re, full_im] = exp_m1_of_diagonal(d);
             [half_re - 0.5 * d, half_im - 0.5 * d, full_re - d, full_im - d, d.exp_m1() - d]
-        });
+        })?;
         // |1 + z|² − 1
         let excess = |re: f64, im: f64| 2.0 * re + re * re + im * im;
         let mean = excess(half_re, half_im);
@@ -91,14 +99,13 @@ impl<F: Breakpoints> ClosedForm<F> for Jackknife {
         let variance = square - mean * (2.0 + mean);
         let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
         relative_central[0] = variance;
-        Theory {
+        Some(Theory {
             relative_mean: 1.0 + mean,
             relative_central,
             log_relative_variance: variance.ln(),
             relative_variance_error: law.relative_error(),
-            relative_variance_bound: f64::INFINITY,
-            lookups,
-        }
+            ..Theory::mean_only(lookups)
+        })
     }
 }
 
@@ -109,12 +116,12 @@ const MOST_ROUNDS: u32 = 60;
 const MOST_EXPONENT: f64 = 300.0;
 
 /// The law in units of exp(max D) T: beside these numbers the 1 of an unbiased mean is nothing, and nothing cancels.
-fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f64) -> Theory {
+fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f64) -> Option<Theory> {
     // Finer nodes may find greater ones: beyond 709 more they overflow, and are the new unit.
     let (mut greatest, mut plain) = (law.greatest(), f64::NAN);
     for _ in 0..MOST_ROUNDS {
         greatest = law.greatest();
-        [plain] = law.expect_within(0.0, |d, _| [(d - greatest).exp()]);
+        [plain] = law.expect_within(0.0, |d, _| [(d - greatest).exp()])?;
         if plain.is_finite() {
             break;
         }
@@ -123,20 +130,20 @@ fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f
     let [half_re, half_im, full_re, full_im] = law.expect_within(plain, |d, _| {
         let (half, full) = ((0.5 * (d - greatest)).exp(), (d - greatest).exp());
         [half * (0.5 * d).cos(), half * (0.5 * d).sin(), full * d.cos(), full * d.sin()]
-    });
+    })?;
     let square = |re: f64, im: f64| re * re + im * im;
     let mean = square(half_re, half_im);
     let variance = 0.5 * (square(full_re, full_im) + plain * plain) - mean * mean;
     let log_relative_variance = 2.0 * greatest + variance.ln();
     let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
     relative_central[0] = log_relative_variance.exp();
-    Theory {
+    Some(Theory {
         relative_mean: (greatest + mean.ln()).exp(),
         relative_central,
         log_relative_variance,
         relative_variance_error: law.relative_error(),
         ..Theory::mean_only(lookups)
-    }
+    })
 }
 
 /// Real and imaginary part of exp((1 + i) x) − 1, without cancellation near 0.

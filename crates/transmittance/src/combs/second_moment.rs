@@ -34,19 +34,20 @@ const NEGLIGIBLE: f64 = 1e-13;
 /// still exp(200) for D = 100; and exp(2D) D^96 is a number up to here.
 const MOST_DEVIATION: f64 = 100.0;
 
-/// Var R with its error relative to itself; NaN where the orders that matter are too many.
+/// Var R with its error relative to itself; NaN where the orders that matter are too many, `None` where they take more look-ups than
+/// there are.
 pub(super) fn relative_variance<F: Breakpoints>(
     law: &mut DeviationLaw<'_, F>,
     roulette: Roulette,
-) -> (f64, f64) {
+) -> Option<(f64, f64)> {
     if law.unit() == 0.0 {
-        return (0.0, 0.0);
+        return Some((0.0, 0.0));
     }
     if law.unit() > MOST_DEVIATION {
-        return (f64::NAN, f64::NAN);
+        return Some((f64::NAN, f64::NAN));
     }
     for highest in ORDERS {
-        let tables = Tables::new(law, highest);
+        let tables = Tables::new(law, highest)?;
         let mut sum = (1.0 - roulette.going_on()) * tables.square;
         let mut negligible = 0;
         for order in 2..=highest {
@@ -56,11 +57,11 @@ pub(super) fn relative_variance<F: Breakpoints>(
             sum += term;
             negligible = if term.abs() <= NEGLIGIBLE * sum.abs() { negligible + 1 } else { 0 };
             if negligible == 2 {
-                return (sum, law.relative_error() + 2.0 * NEGLIGIBLE);
+                return Some((sum, law.relative_error() + 2.0 * NEGLIGIBLE));
             }
         }
     }
-    (f64::NAN, f64::NAN)
+    Some((f64::NAN, f64::NAN))
 }
 
 /// Moments of x = D/max |D|, from which those of D are read by weights w_k (max |D|)^k; v is the variance of x.
@@ -82,17 +83,17 @@ struct Tables {
 }
 
 impl Tables {
-    fn new<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, highest: usize) -> Self {
+    fn new<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, highest: usize) -> Option<Self> {
         let unit = law.unit();
         let v = law.k2() / (unit * unit);
         let [square, first, slope] = law.expect(|d, x| {
             let e = d.exp_m1();
             [e * e, e - d, x * e]
-        });
-        let single = law.moments(highest + 2, f64::exp);
-        let mixed = law.moments(highest, |d| d.exp() * d.exp_m1());
+        })?;
+        let single = law.moments(highest + 2, f64::exp)?;
+        let mixed = law.moments(highest, |d| d.exp() * d.exp_m1())?;
 
-        let mut double = vec![law.moments(2 * highest, |d| (2.0 * d).exp())];
+        let mut double = vec![law.moments(2 * highest, |d| (2.0 * d).exp())?];
         for m in 0..highest {
             let last = &double[m];
             double.push((0..last.len().saturating_sub(2)).map(|p| v * last[p] + last[p + 2]).collect());
@@ -110,7 +111,7 @@ impl Tables {
         for k in 1..=highest {
             factorials.push(factorials[k - 1] * k as f64);
         }
-        Self { unit, square, first, slope, single, mixed, double, product, factorials }
+        Some(Self { unit, square, first, slope, single, mixed, double, product, factorials })
     }
 
     /// E\[(R − 1)² | N = `order`\].

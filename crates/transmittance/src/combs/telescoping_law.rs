@@ -1,12 +1,13 @@
 //! The law of a telescoping sum of nested combs: moments level by level, and what the levels beyond those add.
 
 use super::{Comb, Prepared, Telescoping};
+use crate::allowance::{Allowance, NODES};
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory};
-use fairflight_media::{Breakpoints, RayQuadrature, Tolerance, adaptive_integral};
+use fairflight_media::{Breakpoints, RayQuadrature, Tolerance};
 use std::cell::Cell;
 
-/// Look-ups that the theory may spend on one level.
-const MOST_LOOKUPS: f64 = 3e6;
+/// Look-ups of one level, as far as the allowance of all goes: what follows from several levels is worth more than a digit of one.
+const LEVEL: f64 = 3e6;
 
 /// A share of the variance that is negligible.
 const NEGLIGIBLE: f64 = 1e-13;
@@ -24,7 +25,7 @@ impl Telescoping {
     /// The moments of a level in units of `unit` exp(`scale.log`); `None` where they cost too much.
     fn moments_at<F: Breakpoints>(
         &self,
-        field: &F,
+        (field, allowance): (&F, &Allowance),
         prepared: &Prepared,
         level: u32,
         (scale, unit): (Scale, f64),
@@ -33,7 +34,7 @@ impl Telescoping {
         let teeth = self.comb().teeth().checked_mul(1_u32.checked_shl(level)?)?;
         // Its teeth stand on a breakpoint at the same variates as those of the comb that it makes up.
         let breaks = Comb::new(teeth, self.comb().shape()).ok()?.folded_breakpoints(field, prepared);
-        let most_panels = (MOST_LOOKUPS / 21.0 / f64::from(teeth)) as usize;
+        let most_panels = (LEVEL / NODES / f64::from(teeth)) as usize;
         if breaks.len() >= most_panels {
             return None;
         }
@@ -41,7 +42,7 @@ impl Telescoping {
         let exactness = tolerance.relative.max(1e-12);
         let tolerance =
             Tolerance { absolute: exactness / probability.sqrt(), relative: exactness, most_panels };
-        let integral = adaptive_integral(1.0, &breaks, tolerance, |u| {
+        let integral = allowance.integral(&breaks, tolerance, f64::from(teeth), |u| {
             let (base, difference) =
                 self.nested(field, prepared, (level, u), scale.thickness - scale.log, |x| scale.deviation(x));
             let (base, difference) = (base / unit, difference / unit);
@@ -55,7 +56,7 @@ impl Telescoping {
             }
             all
         });
-        let [base, difference, square, moments @ ..] = integral.value;
+        let [base, difference, square, moments @ ..] = integral?.value;
         Some(Level { base, difference, square, moments })
     }
 }
@@ -65,7 +66,21 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
     /// every level), the variance alone, its tail continued as a geometric series, whose sum is the error that is
     /// stated; infinite where the levels add more and more.
     fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
-        let field = quadrature.field();
+        let allowance = Allowance::usual();
+        self.theory_within(&allowance, quadrature.field(), tau, tolerance)
+            .unwrap_or_else(|| Theory::without(allowance.unreached(2), self.expected_lookups()))
+    }
+}
+
+impl Telescoping {
+    /// The law, if the quadratures of its first levels are within the allowance.
+    fn theory_within<F: Breakpoints>(
+        &self,
+        allowance: &Allowance,
+        field: &F,
+        tau: f64,
+        tolerance: Tolerance,
+    ) -> Option<Theory> {
         let prepared = self.comb().prepare(field, 0.0, field.length());
         let lookups = self.expected_lookups();
         let breaks = self.comb().folded_breakpoints(field, &prepared);
@@ -74,16 +89,17 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
             let absolute = if scale.log == 0.0 { noise * noise } else { 0.0 };
             let coarse = Tolerance { absolute, relative: 1e-3, ..tolerance };
             let greatest = Cell::new(f64::NEG_INFINITY);
-            let square = adaptive_integral(1.0, &breaks, coarse, |u| {
+            let teeth = f64::from(self.comb().teeth());
+            let square = allowance.integral(&breaks, coarse, teeth, |u| {
                 let x = self.comb().thickness(field, &prepared, u);
                 greatest.set(greatest.get().max(tau - x));
                 let relative = scale.deviation(x);
                 [relative * relative]
-            });
-            (square.value[0], greatest.get())
+            })?;
+            Some((square.value[0], greatest.get()))
         };
         let mut scale = Scale { thickness: tau, log: 0.0 };
-        let (mut square, greatest) = rough(scale);
+        let (mut square, greatest) = rough(scale)?;
         if greatest > MOST_EXPONENT {
             scale.log = greatest;
             square = f64::INFINITY;
@@ -93,7 +109,7 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
             if square.is_finite() {
                 break;
             }
-            let (found, greatest) = rough(scale);
+            let (found, greatest) = rough(scale)?;
             square = found;
             if !square.is_finite() {
                 scale.log = greatest;
@@ -101,7 +117,7 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
         }
         let with = |moments, error| scale.theory(moments, error, lookups);
         if square <= noise * noise && scale.log == 0.0 {
-            return with(([0.0; HIGHEST_MOMENT - 1], 0.0), 0.0);
+            return Some(with(([0.0; HIGHEST_MOMENT - 1], 0.0), 0.0));
         }
         let unit = square.sqrt();
         // exp(τ − X) is off by the rounding of its exponent; in units of the greatest one that is what counts.
@@ -114,7 +130,8 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
         let (mut base, mut remaining) = (0.0, 0.0);
         let mut shares: Vec<f64> = Vec::new();
         for level in 0.. {
-            let Some(found) = self.moments_at(field, &prepared, level, (scale, unit), tolerance) else {
+            let Some(found) = self.moments_at((field, allowance), &prepared, level, (scale, unit), tolerance)
+            else {
                 break;
             };
             let probability = self.probability(level);
@@ -130,24 +147,22 @@ impl<F: Breakpoints> ClosedForm<F> for Telescoping {
                 for (sum, moment) in sums.iter_mut().zip(found.moments) {
                     *sum += beyond(level) * moment;
                 }
-                return with((sums, unit), exactness);
+                return Some(with((sums, unit), exactness));
             }
         }
+        let [before, .., last] = shares.get(shares.len().checked_sub(5)?..)? else { return None };
         let mut unknown = [f64::NAN; HIGHEST_MOMENT - 1];
-        let Some([before, .., last]) = shares.len().checked_sub(5).map(|from| &shares[from..]) else {
-            return with((unknown, unit), f64::NAN);
-        };
         // Over four levels: where a jump stands in the binary fractions of a step repeats after two or four, if at all.
         let ratio = (last / before).powf(0.25);
         if ratio >= 1.0 {
             unknown[0] = f64::INFINITY;
-            return with((unknown, unit), f64::NAN);
+            return Some(with((unknown, unit), f64::NAN));
         }
         // Σ over the levels that are left of p b² + 2 b E[Δ] + E[Δ²]/p.
         let tail = last * ratio / (1.0 - ratio);
         sums[0] += beyond(shares.len() as u32 - 1) * base * base - 2.0 * base * remaining + tail;
         unknown[0] = sums[0];
-        with((unknown, unit), tail / sums[0])
+        Some(Theory { unreached: Some(allowance.unreached(3)), ..with((unknown, unit), tail / sums[0]) })
     }
 }
 

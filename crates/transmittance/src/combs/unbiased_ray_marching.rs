@@ -5,6 +5,7 @@ use super::power_series::of_draws;
 use super::second_moment::relative_variance;
 use super::symmetric_means::IN_PLACE;
 use super::{Comb, Prepared, Roulette, RunningCumulant};
+use crate::allowance::{Allowance, NODES};
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
@@ -176,7 +177,25 @@ impl<F: Extinction> TransmittanceEstimator<F> for UnbiasedRayMarching {
 impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
     /// Variance and look-ups; the higher central moments have no closed form here.
     fn theory(&self, quadrature: &mut RayQuadrature<F>, _tau: f64, tolerance: Tolerance) -> Theory {
-        let field = quadrature.field();
+        let allowance = Allowance::usual();
+        self.theory_within(&allowance, quadrature.field(), tolerance)
+            .unwrap_or_else(|| Theory::without(allowance.unreached(2), self.expected_lookups()))
+    }
+}
+
+impl UnbiasedRayMarching {
+    /// The law, if its quadratures are within the allowance.
+    fn theory_within<F: Breakpoints>(
+        &self,
+        allowance: &Allowance,
+        field: &F,
+        tolerance: Tolerance,
+    ) -> Option<Theory> {
+        // The mean and the deviations at the nodes of one panel for each segment: before any of them.
+        let least = 2.0 * NODES * f64::from(self.comb.teeth()) * f64::from(self.segments);
+        if !allowance.has(least) {
+            return None;
+        }
         let (mut log_square, mut error) = (0.0, 0.0);
         let mut before: Option<Prepared> = None;
         for segment in 1..=self.segments {
@@ -189,8 +208,8 @@ impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
                 None => self.comb.prepare(field, 0.0, end),
                 Some(before) => self.comb.prepare_next(field, before, end),
             };
-            let mut law = DeviationLaw::new(&self.comb, field, &prepared, tolerance);
-            let (variance, relative) = relative_variance(&mut law, self.roulette);
+            let mut law = DeviationLaw::new((&self.comb, field, &prepared), tolerance, allowance)?;
+            let (variance, relative) = relative_variance(&mut law, self.roulette)?;
             // Independent factors: second moments multiply.
             log_square += variance.ln_1p();
             error += relative * variance;
@@ -202,8 +221,7 @@ impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
             relative_central = [0.0; HIGHEST_MOMENT - 1];
         }
         relative_central[0] = variance;
-        Theory {
-            relative_mean: 1.0,
+        Some(Theory {
             relative_central,
             log_relative_variance: if log_square > 1.0 {
                 log_square + (-(-log_square).exp()).ln_1p()
@@ -211,9 +229,8 @@ impl<F: Breakpoints> ClosedForm<F> for UnbiasedRayMarching {
                 variance.ln()
             },
             relative_variance_error: if variance > 0.0 { error / variance } else { 0.0 },
-            relative_variance_bound: f64::INFINITY,
-            lookups: self.expected_lookups(),
-        }
+            ..Theory::mean_only(self.expected_lookups())
+        })
     }
 }
 
