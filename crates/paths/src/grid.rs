@@ -237,6 +237,32 @@ mod tests {
         }
     }
 
+    /// σ_t = x + 10 y + 100 z.
+    struct Slope;
+
+    impl Medium for Slope {
+        fn sigma_t_local(&self, point: DVec3) -> f64 {
+            point.dot(dvec3(1.0, 10.0, 100.0))
+        }
+        fn upper_bound(&self) -> Option<f64> {
+            None
+        }
+        fn lower_bound(&self) -> Option<f64> {
+            None
+        }
+    }
+
+    #[test]
+    fn a_fitted_cell_has_the_greatest_value_of_its_corners() {
+        let bounds = Bounds::aligned_box(dvec3(1.0, 2.0, 3.0), dvec3(3.0, 5.0, 7.0)).unwrap();
+        let grid = Grid::fitted(&Slope, &bounds, [2, 3, 4], (2, 2.0, 1.0)).unwrap();
+        // Cells of the size 1: twice the value at the far corner.
+        let far = |i: usize| dvec3((2 + i % 2) as f64, (3 + i / 2 % 3) as f64, (4 + i / 6) as f64);
+        let exact: Vec<f64> = (0..24).map(|i| 2.0 * Slope.sigma_t(far(i))).collect();
+        assert_eq!(grid.sigma_samp, exact);
+        assert_eq!((grid.lowest(), grid.highest()), (2.0 * 432.0, 2.0 * 753.0));
+    }
+
     #[test]
     fn a_fitted_grid_follows_the_medium() {
         let medium = AnalyticCosine::new(1.0).unwrap();

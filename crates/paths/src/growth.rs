@@ -238,6 +238,42 @@ mod tests {
         assert!(!nowhere(0.6, 0.79) && !nowhere(1.0, 0.99) && !nowhere(1.2, 2.0));
     }
 
+    /// Without scattering the collisions of a walk are those of a Poisson process along a straight line: at the k-th, E\[W²\] times the
+    /// share that is still inside is at most (1 − r)² · 2R σ_samp/(k + 1). A walk that began anew at each collision would not leak.
+    #[test]
+    fn straight_walks_get_further_at_each_collision() {
+        let growth = growth(3.0, 5.0, 0.0, 1.0, Version::NonTerminating);
+        let generations = SETTLING..SETTLING + MEASURED;
+        let greatest = generations.map(|k| 40.0 / f64::from(k + 1)).sum::<f64>() / f64::from(MEASURED);
+        let margin = 5.0 * growth.standard_error;
+        assert!(growth.factor > 0.0 && growth.factor < greatest + margin, "{growth:?} above {greatest}");
+    }
+
+    /// Uniform in a ball about a centre that is not the origin: mean c, E\[|p − c|²\] = 3R²/5, and directions of mean 0.
+    #[test]
+    fn walks_start_evenly_in_the_bounds() {
+        const COUNT: u32 = 20_000;
+        let (center, radius) = (DVec3::new(3.0, -2.0, 7.0), 2.0);
+        let bounds = Bounds::sphere(center, radius).unwrap();
+        let volume = Volume { medium: Homogeneous::new(1.0).unwrap(), bounds, albedo: 0.5, phase: Isotropic };
+        let mut source = Seeded::new(3);
+        let (mut from_center, mut squared, mut direction) = (DVec3::ZERO, 0.0, DVec3::ZERO);
+        for _ in 0..COUNT {
+            let line = start(&volume, &mut source);
+            let offset = line.origin - center;
+            assert!(offset.length() <= radius);
+            (from_center, squared, direction) =
+                (from_center + offset, squared + offset.length_squared(), direction + line.direction);
+        }
+        // Five standard errors: √(1/5) R and √(1/3) along an axis, R² √(3/7 − 9/25) of the square.
+        let n = f64::from(COUNT);
+        let error = 5.0 / n.sqrt();
+        assert!((from_center / n).abs().max_element() < error * 0.2_f64.sqrt() * radius, "{from_center}");
+        assert!((direction / n).abs().max_element() < error * (1.0_f64 / 3.0).sqrt(), "{direction}");
+        let square = 0.6 * radius * radius;
+        assert!((squared / n - square).abs() < error * 0.07_f64.sqrt() * radius * radius, "{squared}");
+    }
+
     #[test]
     fn a_small_medium_leaks() {
         // The same r as the supercritical one, in half a mean free path.

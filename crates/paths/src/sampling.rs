@@ -78,3 +78,18 @@ impl<R: SamplingExtinction> SamplingExtinction for &R {
         (**self).lowest()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_pass_through_a_reference() {
+        fn bounds(sampling: impl SamplingExtinction) -> [f64; 2] {
+            [sampling.lowest(), sampling.highest()]
+        }
+        let uniform = &Uniform::new(0.3).unwrap();
+        assert_eq!(bounds(uniform), [0.3; 2]);
+        assert_eq!(bounds(*uniform), [0.3; 2]);
+    }
+}

@@ -60,3 +60,47 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum> Integrator<C> for Marching<'_, M,
         radiance + background * transmittance
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::phase::Isotropic;
+    use fairflight_media::{Bounds, Homogeneous};
+    use fairflight_scene::{Background, Source};
+    use fairflight_sources::Scripted;
+    use glam::DVec3;
+    use std::f64::consts::PI;
+
+    /// A camera ray through the middle of a homogeneous ball, towards a distant light, and n steps of the length h: with S the way
+    /// through, each step adds a ρ E (1 − e^{−σh}) e^{−σkh} e^{−σ(S − (k + o) h)}, hence all the same.
+    #[test]
+    fn a_homogeneous_ball_by_hand() {
+        let (sigma_t, albedo, irradiance, background) = (0.4_f64, 0.6, 5.0, 0.3);
+        let volume = Volume {
+            medium: Homogeneous::new(sigma_t).unwrap(),
+            bounds: Bounds::sphere(DVec3::ZERO, 1.5).unwrap(),
+            albedo,
+            phase: Isotropic,
+        };
+        let light = Source::directional(-DVec3::Z, irradiance).unwrap();
+        let lights =
+            Lights { background: Background { constant: background, maps: vec![] }, sources: vec![light] };
+        let line = Line { origin: -4.0 * DVec3::Z, direction: DVec3::Z };
+        for (steps, offset, u) in
+            [(1, Offset::Fixed, 0.5), (4, Offset::Fixed, 0.5), (3, Offset::Jittered, 0.25)]
+        {
+            let shadow = RayMarching::new(7, Offset::Fixed).unwrap();
+            let mut marching = Marching::new(&volume, &lights, (steps, offset), shadow);
+            let variates: &[f64] = if offset == Offset::Jittered { &[0.25] } else { &[] };
+            let mut source = Scripted::new(variates.iter().copied());
+            let found: f64 = marching.radiance(&line, &mut source);
+            assert_eq!(source.remaining(), 0);
+            let (length, n) = (3.0, f64::from(steps));
+            let h = length / n;
+            let step = albedo * irradiance / (4.0 * PI) * -(-sigma_t * h).exp_m1();
+            let exact =
+                n * step * (-sigma_t * (length - u * h)).exp() + background * (-sigma_t * length).exp();
+            assert!((found - exact).abs() < 1e-14, "{steps} {offset:?}: {found} for {exact}");
+        }
+    }
+}

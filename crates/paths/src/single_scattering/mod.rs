@@ -244,3 +244,56 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, W: Primary<M>, T: RayTransmittanc
         radiance
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::phase::Isotropic;
+    use fairflight_media::{Bounds, Homogeneous};
+    use fairflight_scene::Background;
+    use fairflight_sources::Scripted;
+    use fairflight_transmittance::Regular;
+    use glam::{DVec3, dvec3};
+    use std::f64::consts::PI;
+
+    /// Samples of the source technique by hand: each is the integrand over its density and their number, at the variate (k + u)/n.
+    #[test]
+    fn a_score_is_the_integrand_over_the_intensity() {
+        let (sigma_t, albedo, power) = (0.4_f64, 0.6, 9.0);
+        let volume = Volume {
+            medium: Homogeneous::new(sigma_t).unwrap(),
+            bounds: Bounds::sphere(DVec3::ZERO, 1.5).unwrap(),
+            albedo,
+            phase: Isotropic,
+        };
+        let position = dvec3(0.0, 0.5, 0.3);
+        let lights =
+            Lights { background: Background::dark(), sources: vec![Source::point(position, power).unwrap()] };
+        let line = Line { origin: -4.0 * DVec3::Z, direction: DVec3::Z };
+        // Distances along the ray in the ball, which begins at −1.5.
+        let technique = SourceDriven::new(&Line { origin: -1.5 * DVec3::Z, ..line }, 3.0, position);
+        let integrand = |s: f64| {
+            let squared = 0.25 + (s - 1.8) * (s - 1.8);
+            let irradiance = power / (4.0 * PI * squared) * (-sigma_t * squared.sqrt()).exp();
+            (-sigma_t * s).exp() * sigma_t * albedo / (4.0 * PI) * irradiance
+        };
+        for samples in [1, 3] {
+            let explorers = SharedExplorers::new(2, 1).unwrap();
+            let sampling = (Sampling::One(Technique::Source), samples);
+            let mut integrator =
+                SingleScattering::new(&volume, &lights, sampling, Regular, Regular, explorers).unwrap();
+            let variates = [0.25, 0.6, 0.9];
+            let count = samples as usize;
+            let mut source = Scripted::new(variates.into_iter().take(count));
+            let found: f64 = integrator.radiance(&line, &mut source);
+            let n = f64::from(samples);
+            let exact: f64 = (0..count)
+                .map(|k| {
+                    let s = technique.sample((k as f64 + variates[k]) / n);
+                    integrand(s) / (n * technique.pdf_distance(s))
+                })
+                .sum();
+            assert!((found - exact).abs() < 1e-12 * exact, "{samples}: {found} for {exact}");
+        }
+    }
+}

@@ -153,3 +153,21 @@ impl<M: LineThickness> Primary<M> for Regular {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fairflight_media::{Bounds, Homogeneous};
+    use glam::DVec3;
+
+    #[test]
+    fn the_closed_form_at_every_distance() {
+        let medium = Homogeneous::new(0.7).unwrap();
+        let clip = Bounds::sphere(DVec3::ZERO, 2.0).unwrap().clip(-5.0 * DVec3::Z, DVec3::Z, None);
+        let ray = Ray::new(&medium, &clip.unwrap().unwrap());
+        for s in [0.0, 0.5, 4.0] {
+            let found = Primary::<Homogeneous>::transmittance(&Regular, &ray, s);
+            assert!((found - (-0.7_f64 * s).exp()).abs() < 1e-15, "{found} at {s}");
+        }
+    }
+}
