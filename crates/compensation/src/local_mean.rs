@@ -14,6 +14,7 @@ pub struct LocalMean {
     cells: IVec3,
     means: Vec<f64>,
     floor: f64,
+    lookups: u64,
 }
 
 /// A cell's share of the greatest mean below which its placement rate does not fall.
@@ -28,6 +29,7 @@ impl LocalMean {
         let probes = probes.max(1);
         let place = |i: u32| (f64::from(i) + 0.5) / f64::from(probes);
         let mut means = Vec::with_capacity(counts.iter().product::<u32>() as usize);
+        let mut lookups = 0;
         for z in 0..counts[2] {
             for y in 0..counts[1] {
                 for x in 0..counts[0] {
@@ -42,6 +44,7 @@ impl LocalMean {
                         let point = min + (corner + within) * size;
                         if bounds.contains(point) {
                             sum += medium.sigma_t(point);
+                            lookups += 1;
                         }
                     }
                     means.push((sum / f64::from(probes.pow(3))).max(0.0));
@@ -51,7 +54,20 @@ impl LocalMean {
         let floor = FLOOR * means.iter().copied().fold(0.0, f64::max);
         // A flat box has one cell across; whatever the factor, it is the first.
         let cells_per_length = size.recip().map(|x| if x.is_finite() { x } else { 0.0 });
-        Self { min, cells_per_length, cells: IVec3::from_array(counts.map(|c| c as i32)), means, floor }
+        Self {
+            min,
+            cells_per_length,
+            cells: IVec3::from_array(counts.map(|c| c as i32)),
+            means,
+            floor,
+            lookups,
+        }
+    }
+
+    /// Look-ups that were made.
+    #[must_use]
+    pub fn lookups(&self) -> u64 {
+        self.lookups
     }
 
     /// σ̄_t around a point \[1/length\]; that of the nearest cell outside the box.
@@ -83,6 +99,7 @@ mod tests {
         for point in [DVec3::ZERO, dvec3(1.0, 2.0, 4.0), dvec3(-5.0, 1.0, 9.0)] {
             assert!((mean.at(point) - 0.7).abs() < 1e-15);
         }
+        assert_eq!(mean.lookups(), 24 * 8);
         let flat = Bounds::aligned_box(DVec3::ZERO, dvec3(1.0, 0.0, 1.0)).unwrap();
         let mean = LocalMean::of(&Homogeneous::new(0.7).unwrap(), &flat, [4, 1, 4], 1);
         assert!((mean.at(dvec3(0.5, 0.0, 0.5)) - 0.7).abs() < 1e-15);

@@ -149,16 +149,16 @@ impl IntegratorPlan {
         }
     }
 
-    /// The look-ups that were made to prepare its estimator of transmittance.
-    #[must_use]
-    pub fn preparation(&self) -> Option<&Preparation> {
-        match self {
-            Self::Transmittance(shadow) => shadow.preparation(),
-            Self::SingleScattering(plan) => plan.shadow.preparation(),
-            Self::PathTracer(plan) => plan.transport.shadow.preparation(),
-            Self::Vpl(plan) => plan.transport.shadow.preparation(),
-            Self::ParticleTracer(_) | Self::PhotonTracer(_) | Self::LineSplitting { .. } => None,
-        }
+    /// The look-ups that were made to prepare it: its estimator of transmittance, and local means.
+    pub fn preparations(&self) -> impl Iterator<Item = &Preparation> {
+        let (shadow, means) = match self {
+            Self::Transmittance(shadow) => (Some(shadow), None),
+            Self::SingleScattering(plan) => (Some(&plan.shadow), None),
+            Self::PathTracer(plan) => (Some(&plan.transport.shadow), None),
+            Self::Vpl(plan) => (Some(&plan.transport.shadow), plan.means.as_ref()),
+            Self::ParticleTracer(_) | Self::PhotonTracer(_) | Self::LineSplitting { .. } => (None, None),
+        };
+        shadow.and_then(Shadow::preparation).into_iter().chain(means)
     }
 
     /// The walks of an integrator that has some.

@@ -3,10 +3,10 @@
 use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
 use super::{AnyPhase, Radiant, SpaceSampling, WalkPlan};
 use crate::Failure;
-use crate::estimator::{InScene, Shadow, ShadowWorker, Unlawful};
+use crate::estimator::{InScene, Preparation, Shadow, ShadowWorker, Unlawful};
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
-use fairflight_media::LineThickness;
+use fairflight_media::{EmptySpace, LineThickness};
 use fairflight_paths::transport::{MadeOf, Types, World};
 use fairflight_paths::{Heuristic, PathTracer};
 use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
@@ -63,13 +63,11 @@ pub struct VplPlan {
     /// The bound of the geometric term as given.
     pub clamp: ClampSpec,
     eye_samples: u32,
-    compensation: Option<CompensationOptions>,
-    mean: LocalMean,
+    compensation: Option<(CompensationOptions, LocalMean)>,
+    /// What was looked up for the means.
+    pub(super) means: Option<Preparation>,
     component: ComponentSpec,
 }
-
-/// Look-ups along each edge of a cell for its mean.
-const PROBES: u32 = 4;
 
 impl TransportPlan {
     fn build(spec: &TransportSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
@@ -94,15 +92,28 @@ impl PathTracerPlan {
 
 impl VplPlan {
     pub(super) fn build(spec: &VplSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
-        // Nothing is looked up where nothing is placed by it.
-        let cells = if spec.compensation.is_some() { spec.local_mean_cells } else { 1 };
+        let cells = spec.local_mean_cells;
+        let mut means = None;
+        let compensation = spec.compensation.map(|options| {
+            // Nothing is looked up where nothing is placed by it.
+            let mean = if spec.means().is_some() {
+                LocalMean::of(scene.medium, scene.bounds, [cells; 3], VplSpec::PROBES)
+            } else {
+                LocalMean::of(&EmptySpace, scene.bounds, [1; 3], 1)
+            };
+            means = spec.means().map(|_| Preparation {
+                lookups: mean.lookups(),
+                purpose: format!("local means of the extinction in {cells} x {cells} x {cells} cells"),
+            });
+            (options, mean)
+        });
         Ok(Self {
             transport: TransportPlan::build(&spec.transport, scene)?,
             light_paths: spec.light_paths,
             eye_samples: spec.eye_samples,
             clamp: spec.clamp,
-            compensation: spec.compensation,
-            mean: LocalMean::of(scene.medium, scene.bounds, [cells; 3], PROBES),
+            compensation,
+            means,
             keep_near: spec.keep_near,
             component: spec.component,
         })
@@ -216,7 +227,7 @@ impl VplPlan {
         };
         let (walk, shadow) = (walk.walk(), shadow.worker(unlawful));
         let gather = Gather { world, vpls: stage.vpls, term, heuristic: *heuristic, walk, shadow };
-        let correction = self.compensation.map(|options| Compensation::new(options, &self.mean));
+        let correction = self.compensation.as_ref().map(|(options, mean)| Compensation::new(*options, mean));
         let pairing = correction.as_ref().map_or(Pairing::Every, Compensation::pairing);
         let integrator = VplIntegrator::new(gather, (self.eye_samples, pairing), correction);
         counting(integrator.component(component), |integrator| {

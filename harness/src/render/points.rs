@@ -27,6 +27,8 @@ pub(super) fn points<'r>(
     input: &Input,
 ) -> Result<Vec<Point<'r>>, Failure> {
     let point = |(value, spec): (Option<&'r Value>, &'r SceneSpec)| {
+        work::before_planning(spec, Budget::of(arguments.limits.budget))
+            .map_err(|failure| input.within(failure.at(value)))?;
         let plan = ScenePlan::of(spec, media).map_err(|failure| input.within(failure.at(value)))?;
         if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {
             return Err(Failure::refused(

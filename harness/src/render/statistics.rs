@@ -121,6 +121,14 @@ pub(crate) struct Moments {
     warning: Option<String>,
 }
 
+/// The look-ups before the first pixel, in words.
+fn prepared(integrator: &IntegratorPlan) -> String {
+    let told = |Preparation { lookups, purpose }: &Preparation| {
+        format!("; {lookups} before the first pixel, for {purpose}, are not charged")
+    };
+    integrator.preparations().map(told).collect()
+}
+
 impl<C: Spectrum> From<Drawn<C>> for Moments {
     fn from(drawn: Drawn<C>) -> Self {
         let pixels = &drawn.pixels;
@@ -251,9 +259,7 @@ impl Moments {
             virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
             method: format!(
                 "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}",
-                plan.integrator.preparation().map_or_else(String::new, |Preparation { lookups, purpose }| {
-                    format!("; {lookups} before the first pixel, for {purpose}, are not charged")
-                })
+                prepared(&plan.integrator)
             ),
             warnings,
             provenance,

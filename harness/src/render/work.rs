@@ -54,7 +54,16 @@ pub(super) struct Work {
     pub seconds: f64,
 }
 
-/// The work of an image that may be drawn within a budget.
+/// Checks that what is looked up before an image can be planned is within a budget.
+///
+/// # Errors
+/// If it is not.
+pub(super) fn before_planning(spec: &SceneSpec, budget: Budget) -> Result<(), Failure> {
+    let IntegratorSpec::Vpl(vpl) = &spec.integrator else { return Ok(()) };
+    vpl.means().map_or(Ok(()), |(lookups, how)| budget.check("integrator.local_mean_cells", lookups, &how))
+}
+
+/// The work of an image that may be drawn within a budget, that of its preparation included.
 ///
 /// # Errors
 /// If more look-ups are to be expected, or an interrupt asked to stop.
@@ -103,8 +112,14 @@ pub(super) fn check(
     };
     let each = lookups / paths;
     let key = if each > MOST_ORDINARY { key } else { "samples_per_pixel" };
-    budget.check(key, lookups.max(paths), &because(each))?;
-    Ok(Work { lookups: lookups.max(paths), seconds: chords.profile.as_ref().map_or(0.0, seconds_per_lookup) })
+    let prepared: u64 = plan.integrator.preparations().map(|preparation| preparation.lookups).sum();
+    let lookups = lookups.max(paths) + prepared as f64;
+    let because = match prepared {
+        0 => because(each),
+        prepared => format!("{} and {prepared} before the first", because(each)),
+    };
+    budget.check(key, lookups, &because)?;
+    Ok(Work { lookups, seconds: chords.profile.as_ref().map_or(0.0, seconds_per_lookup) })
 }
 
 /// Checks that so many of something, of so many bytes each, may be kept in memory.

@@ -1,6 +1,6 @@
 //! Work is bounded: what would take days is refused before anything is drawn.
 
-use crate::common::{fixture, harness};
+use crate::common::{estimate, fixture, harness};
 use crate::render::{scene, with};
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -150,6 +150,26 @@ fn dense_media_are_not_refused_for_what_nobody_looks_up() {
     }
 }
 
+/// Closed forms have an allowance of their own: what they do not reach, they name, and the verdict is null.
+#[test]
+fn references_say_what_they_did_not_reach() {
+    let waves = r#"{ "kind": "expression", "sigma_t": "abs(sin(50*s))", "length": 2, "majorant": 1 }"#;
+    let comb = r#"{ "kind": "unbiased_ray_marching", "teeth": 100, "segments": 30000 }"#;
+    let spec = experiment(waves, comb, 2);
+    let clock = Instant::now();
+    let result = estimate(&spec);
+    assert!(clock.elapsed().as_secs() < 60);
+    let unreached = "the variance in closed form was not reached with 0.0e0 look-ups";
+    for text in [&result["verdict"]["reason"], &result["reference"]["method"]] {
+        assert!(text.as_str().unwrap().contains(unreached), "{text}");
+    }
+    assert_eq!((&result["verdict"]["sound"], &result["reference"]["variance"]), (&Value::Null, &Value::Null));
+    let affordable = estimate(&spec.replace("30000", "3"));
+    assert!(
+        affordable["reference"]["variance"].is_f64() && !affordable.to_string().contains("was not reached")
+    );
+}
+
 #[test]
 fn images_that_would_take_days_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -207,6 +227,50 @@ fn images_that_would_take_days_are_refused() {
     let limited = harness(&["render", "-", "--out", &out, "--time-limit", "0.05"], &endless.to_string());
     assert_eq!(limited.code, 0, "{}", limited.stderr);
     assert_eq!(harness(&["render", "-", "--out", &out, "--budget", "100"], &scene().to_string()).code, 2);
+}
+
+/// What is looked up before the first pixel counts as well, and is known before it is done.
+#[test]
+fn local_means_are_counted_before_the_first_pixel() {
+    let compensated = |placement: &str, cells: u32| {
+        with(|scene| {
+            scene["integrator"] = json!({ "kind": "vpl", "light_paths": 1, "clamp": 1, "local_mean_cells": cells,
+                "compensation": { "strategy": "one_to_one", "placement": placement } });
+            scene["camera"]["resolution"] = json!([2, 2]);
+            scene["medium"]["bounds"] = json!({ "box": { "min": [-5, -5, 5], "max": [5, 5, 15] } });
+            scene["samples_per_pixel"] = json!(1);
+        })
+        .to_string()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let [image, statistics] = ["image.pfm", "statistics.json"].map(|name| folder.path().join(name));
+    let render = |budget: &str, scene: &str| {
+        let out = [&image, &statistics].map(|path| path.display().to_string());
+        harness(&["render", "-", "--out", &out[0], "--out", &out[1], "--budget", budget], scene)
+    };
+    // 4³ look-ups in each of 256³ cells, not one of which is made.
+    let clock = Instant::now();
+    let found = render("1e9", &compensated("locally_homogeneous", 256));
+    assert_eq!(found.code, 2);
+    let words = "integrator.local_mean_cells: 1.074e9 look-ups are to be expected (256 x 256 x 256 cells of 4 x 4 x 4, before the \
+        first pixel), more than the budget of 1e9; --budget allows more";
+    assert!(found.stderr.contains(words), "{}", found.stderr);
+    assert!(clock.elapsed().as_secs_f64() < 10.0);
+    // What is within the budget alone is not with the pixels beside it, and is told.
+    let found = render("2097153", &compensated("locally_homogeneous", 32));
+    assert_eq!(found.code, 2);
+    assert!(found.stderr.contains("and ") && found.stderr.contains(" before the first)"), "{}", found.stderr);
+    let method = || {
+        let text = std::fs::read_to_string(&statistics).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()["method"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(render("1e9", &compensated("locally_homogeneous", 4)).code, 0);
+    assert!(
+        method().contains(" before the first pixel, for local means of the extinction in 4 x 4 x 4 cells")
+    );
+    // Free flights need none.
+    assert_eq!(render("1e9", &compensated("free_flight", 256)).code, 0);
+    assert!(!method().contains("before the first pixel"), "{}", method());
 }
 
 #[test]

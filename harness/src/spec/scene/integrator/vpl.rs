@@ -192,6 +192,22 @@ impl Rule<Option<CompensationOptions>> for CompensationRule {
 }
 
 impl VplSpec {
+    /// Look-ups along each edge of a cell for its mean.
+    pub const PROBES: u32 = 4;
+
+    /// The look-ups that local means take at most, and how; `None` where vertices are not placed by them.
+    #[must_use]
+    pub fn means(&self) -> Option<(f64, String)> {
+        let (cells, probes) = (self.local_mean_cells, Self::PROBES);
+        let how = || {
+            format!(
+                "{cells} x {cells} x {cells} cells of {probes} x {probes} x {probes}, before the first pixel"
+            )
+        };
+        let placed = self.compensation.filter(|options| options.placement == Placement::LocallyHomogeneous);
+        placed.map(|_| (f64::from(cells * probes).powi(3), how()))
+    }
+
     fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
         if self.component == ComponentSpec::Correction && self.compensation.is_none() {
             return Err(object.required("component")?.refuse("correction needs a compensation"));
