@@ -14,7 +14,9 @@
 //! Moments bound rare values on average only: one that shifts z by D alone may have the probability kappa/(N D^4), 3e-5 a run at
 //! D = 5 where the kurtosis is as large as allowed. A z-test rejects therefore only where no sample shifts z by more than
 //! [`MOST_OF_ONE`]. Up to there a compensated Poisson sum of such values beside a normal law has at most 2.5 times the normal tail at
-//! z = 5.3, by its Chernoff bound with as many values as the skewness allows.
+//! z = 5.3, by its Chernoff bound with as many values as the skewness allows. Of its level such a test takes 5/8: a skewness that inflates
+//! one tail by 2 deflates the other as much, and together with the kurtosis both are 2 (2 + 1/2)/2 = 2.5 times a quarter. What it leaves,
+//! [`LEFT_OF_LEVEL`], is for the test of samples that it does not judge.
 //!
 //! **Standard error from the sample.** Studentising turns the corrections into exp(-gamma z^3/(3 sqrt(N))) and
 //! exp((3 - kappa) z^4/(12 N)) (Hall, "The Bootstrap and Edgeworth Expansion" (1992), chapter 2): a mean that is low for
@@ -31,6 +33,9 @@ pub const TAIL_INFLATION: f64 = 4.0;
 
 /// The most by which a single value may shift z where a z-test rejects.
 pub const MOST_OF_ONE: f64 = 0.25;
+
+/// The part of its level that a z-test leaves to another test, of the samples in which one value shifts z by more.
+pub const LEFT_OF_LEVEL: f64 = 0.375;
 
 /// Factor of the skewness and the excess kurtosis of a sample before they are believed.
 pub const SAMPLE_SHAPE_FACTOR: f64 = 2.0;

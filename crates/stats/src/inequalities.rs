@@ -21,7 +21,7 @@
 //! side are both made at half of the level, and both sides share it: p = 2 * tests * the smallest.
 
 use crate::moments::Moments;
-use crate::reference::{Certainty, Reference, Scores};
+use crate::reference::{Reference, Scores};
 
 /// The c of g(x) <= x^3/6 + x^4/c: the greatest (g(x) - x^3/6)/x^4 is 0.0220, at x = -5.1.
 const FOURTH: f64 = 45.0;
@@ -158,18 +158,6 @@ fn one_over_mean(exponents: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     }
     let sum: f64 = lawful.map(|(x, weight)| weight * (x - greatest).exp()).sum();
     ((-greatest).exp() / sum).min(1.0)
-}
-
-impl Reference {
-    /// An upper bound of the variance of one sample, where one is certified.
-    fn greatest_variance(&self) -> Option<f64> {
-        match self.certainty {
-            Certainty::Estimated { .. } => None,
-            Certainty::Certified => {
-                self.variance_bound.or_else(|| self.closed_moments().and_then(|moments| moments.variance))
-            }
-        }
-    }
 }
 
 #[cfg(test)]

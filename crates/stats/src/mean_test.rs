@@ -1,5 +1,6 @@
 //! The test of a mean: exact binomial, normal where that is adequate, an exponential inequality, or none.
 
+use crate::approximation::LEFT_OF_LEVEL;
 use crate::bernstein::Bernstein;
 use crate::binomial::Binomial;
 use crate::binomial_inference::trials_needed;
@@ -14,8 +15,8 @@ use crate::verdict::MeanTest;
 
 /// Judges the mean of n >= 1 samples. The level is alpha for two-valued samples, which have no other test, else alpha/2.
 ///
-/// The z-test decides alone where variance and shape of the law are known, and no single sample decides it. Elsewhere nothing is
-/// rejected but by an inequality whose level holds for every shape; what a normal approximation says is enough to agree there, and
+/// The z-test decides alone where variance and shape of the law are known, and no single sample decides it; where one does, an inequality has
+/// what that test leaves of the level. Elsewhere nothing is rejected but by an inequality whose level holds for every shape; what a normal approximation says is enough to agree there, and
 /// no more than that.
 pub(crate) fn judge_mean(measured: &Moments, reference: &Reference, mean: f64, alpha: f64) -> MeanJudgement {
     let n = measured.count() as f64;
@@ -43,7 +44,10 @@ pub(crate) fn judge_mean(measured: &Moments, reference: &Reference, mean: f64, a
 
     let bernstein = Bounds::of(reference);
     let by_bernstein = bernstein.map(|bounds| bounds.p_value(reference, mean, n));
-    let inequality = strongest(evidence(measured, reference, level), by_bernstein);
+    // Which test it is hangs on the sample here, and both together must not exceed the level.
+    let left = if z.as_ref().is_ok_and(|z| z.shares_level) { LEFT_OF_LEVEL } else { 1.0 };
+    let inequality = strongest(evidence(measured, reference, level), by_bernstein)
+        .map(|inequality| Inequality { p: (inequality.p / left).min(1.0), ..inequality });
     if let Some(Inequality { p, name }) = inequality
         && p <= level
     {

@@ -50,9 +50,14 @@ pub(crate) struct ZTest {
     /// True if it may reject: variance and shape are those of the law, or its tails are known to be mild, and no single sample makes up
     /// much of the deviation. A sample's own are blind to what that sample lacks: otherwise they agree, and do not reject.
     pub(crate) may_reject: bool,
+    /// True if it may reject other samples of this law at this N: what is left of the level is then all that another test has.
+    pub(crate) shares_level: bool,
     /// Name of the standard error, in words.
     pub(crate) name: &'static str,
 }
+
+/// A variance that is known to this factor: z is then known to half as much, and its tail to exp(z²/2000), 1.014 at z = 5.3.
+const EXACT: f64 = 1.001;
 
 /// The z-test, where N is large enough for the shape of the law; else why it is not.
 pub(crate) fn z_test(
@@ -97,6 +102,8 @@ pub(crate) fn z_test(
         ));
     }
     let is_of_the_law = closed_variance.is_some() && closed_shape.is_some();
+    let is_exact = reference.variance_bound.is_none_or(|bound| bound <= EXACT * variance);
+    let shares_level = (is_of_the_law && is_exact) || reference.tails == Tails::Mild;
     let error = (variance / n).sqrt();
     let reach = test.critical_z + upper_quantile(1.0 - POWER);
     let deviation = ((mean - reference.mean).abs() - reference.allowance()).max(0.0);
@@ -107,7 +114,8 @@ pub(crate) fn z_test(
         p: NormalApproximation::p_value(deviation / error),
         detectable: relative(reach * error + 2.0 * reference.allowance(), reference),
         samples_needed,
-        may_reject: (is_of_the_law || reference.tails == Tails::Mild) && greatest <= MOST_OF_ONE * n * error,
+        may_reject: shares_level && greatest <= MOST_OF_ONE * n * error,
+        shares_level,
         name: match (closed_variance.is_some(), closed_shape.is_some()) {
             (true, true) => "z with the closed-form standard error",
             (true, false) => "z with the closed-form standard error, shape from the sample",

@@ -111,6 +111,16 @@ impl Reference {
         }
     }
 
+    /// An upper bound of the variance of one sample, where one is certified: with its error, if that is known.
+    pub(crate) fn greatest_variance(&self) -> Option<f64> {
+        match self.certainty {
+            Certainty::Estimated { .. } => None,
+            Certainty::Certified => {
+                self.variance_bound.or_else(|| self.closed_moments().and_then(|moments| moments.variance))
+            }
+        }
+    }
+
     /// Greatest distance of the true mean from `mean` that is not excluded: the error, or that of the certified bounds.
     #[must_use]
     pub fn uncertainty(&self) -> f64 {

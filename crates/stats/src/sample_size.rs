@@ -67,8 +67,7 @@ pub(crate) fn bernstein_law(reference: &Reference) -> Option<Bernstein> {
     }
     let (below, above) = ((reference.mean - minimum).max(0.0), (maximum - reference.mean).max(0.0));
     let greatest = below * above;
-    let closed = reference.closed_moments().and_then(|moments| moments.variance);
-    let variance = closed.map_or(greatest, |v| v.min(greatest));
+    let variance = reference.greatest_variance().map_or(greatest, |v| v.min(greatest));
     Some(Bernstein { variance, bound: below.max(above) })
 }
 

@@ -3,6 +3,7 @@
 use approx::assert_relative_eq;
 use fairflight_stats::{
     ClosedMoments, MeanTest, Moments, NormalApproximation, Reference, Scores, StandardErrorSource, judge,
+    samples_needed,
 };
 
 mod samples;
@@ -283,4 +284,44 @@ fn the_error_of_a_probability_is_granted_on_both_sides() {
         let verdict = judge(&counts(1_000_000, (1e6 * share) as u64, 1.0), &reference, ALPHA);
         assert_eq!(verdict.sound != Some(false), agrees, "{share}: {}", verdict.reason);
     }
+}
+
+/// Where one sample is too large for a z-test of the law, an inequality has what that test leaves of the level: 3/8.
+#[test]
+fn a_test_that_hangs_on_the_sample_shares_the_level() {
+    let mut measured = exponential(40_000, 1.04);
+    measured.push(100.0);
+    let shared = judge(&measured, &unit_exponential(), ALPHA);
+    let variance_alone = Reference { variance_bound: Some(1.0), ..Reference::exact(1.0) };
+    let alone = judge(&measured, &variance_alone, ALPHA);
+    for verdict in [&shared, &alone] {
+        assert_eq!(
+            (verdict.sound, verdict.mean_test),
+            (Some(false), MeanTest::Inequality),
+            "{}",
+            verdict.reason
+        );
+    }
+    assert_relative_eq!(shared.mean_p.unwrap(), alone.mean_p.unwrap() / 0.375, max_relative = 1e-9);
+}
+
+/// A closed variance that is off by a tenth makes no z-score of the law.
+#[test]
+fn a_variance_with_an_error_rejects_by_its_bound() {
+    let verdict = |bound: f64| {
+        let reference = Reference { variance_bound: Some(bound), ..unit_exponential() };
+        judge(&exponential(40_000, 1.05), &reference, ALPHA)
+    };
+    assert_eq!(verdict(1.0005).mean_test, MeanTest::Normal);
+    let rough = verdict(1.1);
+    assert_eq!((rough.sound, rough.mean_test), (Some(false), MeanTest::Inequality), "{}", rough.reason);
+    // Bernstein's inequality holds with a bound of the variance, not with less.
+    let bounded = |variance: f64, variance_bound: Option<f64>| {
+        let moments = Some(ClosedMoments { variance: Some(variance), ..ClosedMoments::with_mean(0.5) });
+        let scores = Scores::Bounded { minimum: 0.0, maximum: 1.0 };
+        let reference = Reference { moments, variance_bound, scores, ..Reference::exact(0.5) };
+        samples_needed(&reference, ALPHA, 0.05).unwrap()
+    };
+    assert_eq!(bounded(0.01, Some(0.02)), bounded(0.02, None));
+    assert!(bounded(0.01, None) < bounded(0.02, None));
 }

@@ -19,6 +19,8 @@ struct Level {
     difference: f64,
     square: f64,
     moments: [f64; HIGHEST_MOMENT - 1],
+    /// The error of the second moment, where its integral has not converged.
+    error: f64,
 }
 
 impl Telescoping {
@@ -34,7 +36,7 @@ impl Telescoping {
         let teeth = self.comb().teeth().checked_mul(1_u32.checked_shl(level)?)?;
         // Its teeth stand on a breakpoint at the same variates as those of the comb that it makes up.
         let breaks = Comb::new(teeth, self.comb().shape()).ok()?.folded_breakpoints(field, prepared);
-        let most_panels = (LEVEL / NODES / f64::from(teeth)) as usize;
+        let most_panels = tolerance.most_panels.min((LEVEL / NODES / f64::from(teeth)) as usize);
         if breaks.len() >= most_panels {
             return None;
         }
@@ -56,8 +58,10 @@ impl Telescoping {
             }
             all
         });
-        let [base, difference, square, moments @ ..] = integral?.value;
-        Some(Level { base, difference, square, moments })
+        let integral = integral?;
+        let error = if integral.converged { 0.0 } else { integral.error[3] };
+        let [base, difference, square, moments @ ..] = integral.value;
+        Some(Level { base, difference, square, moments, error })
     }
 }
 
@@ -127,7 +131,7 @@ impl Telescoping {
 
         let beyond = |level: u32| (1.0 - self.level_ratio()).powi(level as i32 + 1);
         let mut sums = [0.0; HIGHEST_MOMENT - 1];
-        let (mut base, mut remaining) = (0.0, 0.0);
+        let (mut base, mut remaining, mut error) = (0.0, 0.0, 0.0);
         let mut shares: Vec<f64> = Vec::new();
         for level in 0.. {
             let Some(found) = self.moments_at((field, allowance), &prepared, level, (scale, unit), tolerance)
@@ -138,6 +142,7 @@ impl Telescoping {
             for (sum, moment) in sums.iter_mut().zip(found.moments) {
                 *sum += probability * moment;
             }
+            error += probability * found.error;
             base = found.base;
             remaining = if level == 0 { base } else { remaining + found.difference };
             shares.push(probability * found.square);
@@ -147,7 +152,8 @@ impl Telescoping {
                 for (sum, moment) in sums.iter_mut().zip(found.moments) {
                     *sum += beyond(level) * moment;
                 }
-                return Some(with((sums, unit), exactness));
+                error += beyond(level) * found.error;
+                return Some(with((sums, unit), exactness.max(error / sums[0])));
             }
         }
         let [before, .., last] = shares.get(shares.len().checked_sub(5)?..)? else { return None };
@@ -162,7 +168,10 @@ impl Telescoping {
         let tail = last * ratio / (1.0 - ratio);
         sums[0] += beyond(shares.len() as u32 - 1) * base * base - 2.0 * base * remaining + tail;
         unknown[0] = sums[0];
-        Some(Theory { unreached: Some(allowance.unreached(3)), ..with((unknown, unit), tail / sums[0]) })
+        Some(Theory {
+            unreached: Some(allowance.unreached(3)),
+            ..with((unknown, unit), (tail + error) / sums[0])
+        })
     }
 }
 

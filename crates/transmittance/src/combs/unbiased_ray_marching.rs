@@ -212,7 +212,7 @@ impl UnbiasedRayMarching {
             let (variance, relative) = relative_variance(&mut law, self.roulette)?;
             // Independent factors: second moments multiply.
             log_square += variance.ln_1p();
-            error += relative * variance;
+            error += relative * variance / (1.0 + variance);
             before = Some(prepared);
         }
         let variance = log_square.exp_m1();
@@ -228,7 +228,8 @@ impl UnbiasedRayMarching {
             } else {
                 variance.ln()
             },
-            relative_variance_error: if variance > 0.0 { error / variance } else { 0.0 },
+            // dVar/Var = dL exp(L)/(exp(L) − 1), L = Σ ln(1 + v) over the segments.
+            relative_variance_error: if variance > 0.0 { error / -(-log_square).exp_m1() } else { 0.0 },
             ..Theory::mean_only(self.expected_lookups())
         })
     }
@@ -283,6 +284,66 @@ mod tests {
         let theory = theory_of(ray, &estimator);
         assert_relative_eq!(theory.relative_central[0], 1.49e-3, max_relative = 0.02);
         assert_relative_eq!(theory.lookups, 31.5, max_relative = 0.02);
+    }
+
+    /// Segments of which each is affordable and all are not: humps that no breakpoint tells of.
+    #[test]
+    fn all_segments_share_the_allowance() {
+        struct Humps {
+            length: f64,
+            lookups: std::cell::Cell<f64>,
+        }
+        impl Extinction for Humps {
+            fn sigma_t(&self, s: f64) -> f64 {
+                self.lookups.set(self.lookups.get() + 1.0);
+                (7.3 * s).sin().abs()
+            }
+            fn length(&self) -> f64 {
+                self.length
+            }
+        }
+        impl Breakpoints for Humps {
+            fn breakpoints(&self) -> Vec<f64> {
+                Vec::new()
+            }
+        }
+        let estimator = UnbiasedRayMarching::new(comb(3, CombShape::Uniform), Roulette::KETTUNEN);
+        let within = |most: f64, segments: u32| {
+            let humps = Humps { length: 10.0 * f64::from(segments), lookups: std::cell::Cell::new(0.0) };
+            let estimator = estimator.in_segments(segments).unwrap();
+            let theory = estimator.theory_within(&Allowance::of(most), &humps, Tolerance::to(1e-6));
+            (theory.is_some(), humps.lookups.get())
+        };
+        let (known, one) = within(1e6, 1);
+        assert!(known);
+        let (known, taken) = within(10.0 * one, 30);
+        assert!(!known && taken > one && taken <= 10.0 * one, "{taken} of {}", 10.0 * one);
+    }
+
+    /// Periods of a saw, one to a segment: where each variance v is off by a share e, ln Π (1 + v) is off by n e v/(1 + v).
+    #[test]
+    fn the_error_of_many_factors_is_that_of_their_logarithms() {
+        let saw = |periods: u32| {
+            let nodes = (0..=2 * periods).map(|i| f64::from(4 * (i / 2) + i % 2)).collect();
+            let values = (0..=2 * periods).map(|i| if i % 2 == 0 { 0.0 } else { 6.0 }).collect();
+            PiecewiseLinear::new(nodes, values).unwrap()
+        };
+        let estimator = UnbiasedRayMarching::new(comb(2, CombShape::Uniform), Roulette::new(0.5).unwrap());
+        let loose = Tolerance { most_panels: 2, ..Tolerance::to(1e-9) };
+        let theory = |periods: u32| {
+            let estimator = estimator.in_segments(periods).unwrap();
+            estimator.theory(&mut RayQuadrature::new(saw(periods), &[]), f64::NAN, loose)
+        };
+        let one = theory(1);
+        let (v, e) = (one.relative_central[0], one.relative_variance_error);
+        assert!(v > 1.0 && e > 1e-12, "{one:?}");
+        for n in [2_u32, 5] {
+            let found = theory(n);
+            let variance = (1.0 + v).powi(n as i32) - 1.0;
+            assert_relative_eq!(found.relative_central[0], variance, max_relative = 1e-9);
+            let exact = f64::from(n) * e * v / (1.0 + v) * (1.0 + variance) / variance;
+            assert_relative_eq!(found.relative_variance_error, exact, max_relative = 1e-2);
+        }
     }
 
     #[test]
