@@ -174,3 +174,34 @@ fn of_great_exponents(
         ..Theory::mean_only(lookups)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use fairflight_media::{OpticalThickness, PiecewiseConstant};
+
+    /// On steps X is constant between the offsets at which a look-up meets an edge: all moments are sums, and few panels suffice.
+    #[test]
+    fn offsets_are_split_where_a_look_up_meets_an_edge() {
+        let field = PiecewiseConstant::new(vec![0.0, 0.9, 2.3, 3.1], vec![0.4, 1.7, 0.2]).unwrap();
+        let tau = field.optical_thickness(0.0, 3.1);
+        let marching = RayMarching::new(4, Offset::Jittered).unwrap();
+        let mut borders = [0.0, (0.9 * 4.0 / 3.1_f64).fract(), (2.3 * 4.0 / 3.1_f64).fract(), 1.0];
+        borders.sort_unstable_by(f64::total_cmp);
+        let moment = |power: i32, centre: f64| -> f64 {
+            let between = |pair: &[f64]| {
+                let middle = 0.5 * (pair[0] + pair[1]);
+                let x: f64 = (0..4).map(|k| field.sigma_t((f64::from(k) + middle) * 3.1 / 4.0)).sum();
+                (pair[1] - pair[0]) * ((tau - x * 3.1 / 4.0).exp() - centre).powi(power)
+            };
+            borders.windows(2).map(between).sum()
+        };
+        let tolerance = Tolerance { most_panels: 4, ..Tolerance::TIGHT };
+        let theory = marching.theory(&mut RayQuadrature::new(field.clone(), &[]), tau, tolerance);
+        let mean = moment(1, 0.0);
+        assert_relative_eq!(theory.relative_mean, mean, max_relative = 1e-12);
+        assert_relative_eq!(theory.relative_central[0], moment(2, mean), max_relative = 1e-11);
+        assert_relative_eq!(theory.relative_central[2], moment(4, mean), max_relative = 1e-11);
+    }
+}
