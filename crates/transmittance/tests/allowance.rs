@@ -15,7 +15,7 @@ struct Rough(Cell<u64>);
 impl Extinction for &Rough {
     fn sigma_t(&self, s: f64) -> f64 {
         self.0.set(self.0.get() + 1);
-        if (s * 7919.3).fract() < 0.37 { 1.0 } else { 0.0 }
+        if (s * 7.3).fract() < 0.37 { 1.0 } else { 0.0 }
     }
     fn length(&self) -> f64 {
         1.0
