@@ -136,11 +136,10 @@ impl<W: Types> Correction<W> for Compensation<'_> {
             return W::Spectrum::ZERO;
         }
         let region = Region::new(*y, bound, &self.options, gather);
-        let lights = gather.vpls.len();
-        if which == Connected::All && self.options.strategy == Strategy::ManyToOne && lights > 0 {
+        if which == Connected::All && self.options.strategy == Strategy::ManyToOne {
             // engelhardt-2013 section 5 splits the integral likewise: from emitters once, from each light by itself.
             let mut sum = self.step(gather, &region, (Connected::Nothing, 0), source);
-            for index in 0..lights {
+            for index in 0..gather.vpls.len() {
                 sum += self.step(gather, &region, (Connected::One(index), 0), source);
             }
             return sum;

@@ -29,7 +29,7 @@ pub struct Theory {
 pub struct Unreached {
     /// Its order: 1 for the mean, 2 for the variance.
     pub moment: u32,
-    /// Look-ups that were made before it was given up.
+    /// Look-ups that were made before it was given up; an integrand at a node whose look-ups are kept counts as one.
     pub lookups: f64,
 }
 

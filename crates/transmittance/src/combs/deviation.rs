@@ -85,8 +85,8 @@ impl<'a, F: Breakpoints> DeviationLaw<'a, F> {
         let mean = allowance.integral(&breaks, tolerance, teeth, |u| [comb.thickness(field, prepared, u)])?;
         let mean_error = if mean.converged { 0.0 } else { mean.error[0] };
         let mean = mean.value[0];
-        // Its nodes are those between the breakpoints.
-        allowance.tolerance(tolerance, teeth, breaks.len() + 1)?;
+        // Of the deviations: one panel of all, then one between any two breakpoints.
+        allowance.tolerance(tolerance, teeth, breaks.len() + 2)?;
         let deviation = Deviation { comb, field, prepared, mean, allowance };
         let quadrature = RayQuadrature::new(deviation, &[]);
         let mut law = Self { quadrature, mean, unit: 0.0, k2: 0.0, relative_error: 0.0, tolerance };
