@@ -126,14 +126,29 @@ impl Camera {
             return None;
         }
         let distance = offset.length();
-        let cosine = depth / distance;
-        let pixel_area = 4.0 * self.half_extent.x * self.half_extent.y / (columns * rows);
         Some(Projection {
             pixel: [x as u32, y as u32],
             distance,
             towards_camera: -offset / distance,
-            importance: 1.0 / (distance * distance * cosine * cosine * cosine * pixel_area),
+            importance: self.importance_at(distance, depth / distance),
         })
+    }
+
+    /// The importance of a [`Projection`] of `point`, also where that would lie beside the image: for a point of a ray through a pixel, which
+    /// rounding may move across its edge.
+    #[inline]
+    #[must_use]
+    pub fn importance(&self, point: DVec3) -> f64 {
+        let offset = point - self.origin;
+        let distance = offset.length();
+        self.importance_at(distance, offset.dot(self.forward) / distance)
+    }
+
+    #[inline]
+    fn importance_at(&self, distance: f64, cosine: f64) -> f64 {
+        let [columns, rows] = self.resolution.map(f64::from);
+        let pixel_area = 4.0 * self.half_extent.x * self.half_extent.y / (columns * rows);
+        1.0 / (distance * distance * cosine * cosine * cosine * pixel_area)
     }
 }
 
@@ -179,6 +194,7 @@ mod tests {
             assert_eq!(seen.pixel, pixel);
             assert!((seen.distance - 17.0).abs() < 1e-12);
             assert!((seen.towards_camera + ray.direction).length() < 1e-14);
+            assert_eq!(camera.importance(ray.at(17.0)), seen.importance);
         }
         assert!(camera.project(camera.origin()).is_none());
         assert!(camera.project(camera.ray([0, 0], [0.5, 0.5]).at(-1.0)).is_none());
@@ -194,6 +210,11 @@ mod tests {
             let at = |sign: f64| camera.ray([3, 5], [0.5 + sign * u, 0.5 + sign * v]).direction;
             (at(1.0) - at(-1.0)) / (2.0 * STEP)
         };
+        // Just beside the image it is still what the formula says.
+        let beside = camera.ray([0, 5], [-1e-9, 0.5]).at(10.0);
+        assert!(camera.project(beside).is_none());
+        let inside = camera.importance(camera.ray([0, 5], [1e-9, 0.5]).at(10.0));
+        assert!((camera.importance(beside) / inside - 1.0).abs() < 1e-9);
         let solid_angle = difference(STEP, 0.0).cross(difference(0.0, STEP)).length();
         let seen = camera.project(camera.ray([3, 5], [0.5, 0.5]).at(10.0)).unwrap();
         assert!((seen.importance * 100.0 * solid_angle - 1.0).abs() < 1e-7);

@@ -43,21 +43,19 @@
 //! ```
 
 mod correction;
-mod emission;
 #[cfg(test)]
 mod fixtures;
 mod gather;
 mod integrator;
 mod keep_near;
-mod ledger;
 mod light_paths;
 mod vpl;
 
+pub use fairflight_paths::transport::{Emitters, Ledger};
+
 pub use correction::{Connections, Correction, Uncorrected};
-pub use emission::{Emitters, Start};
 pub use gather::{Connected, Gather, Term};
 pub use integrator::{Component, Pairing, VplIntegrator};
 pub use keep_near::KeepNear;
-pub use ledger::Ledger;
 pub use light_paths::LightPaths;
 pub use vpl::Vpl;

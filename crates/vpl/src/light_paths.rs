@@ -1,9 +1,9 @@
 //! Light paths, whose vertices are virtual point lights (engelhardt-2013 section 3.2, raab-2008 section 4.2).
 
-use crate::{Emitters, KeepNear, Ledger, Vpl};
+use crate::{KeepNear, Vpl};
 use fairflight_media::Line;
 use fairflight_paths::Walk;
-use fairflight_paths::transport::{Event, Types, World};
+use fairflight_paths::transport::{Emitters, Event, Ledger, Types, World};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 
@@ -91,7 +91,7 @@ impl<'s, W: Types> LightPaths<'s, W> {
                         return;
                     };
                     if let Some(passage) = world.pass(&hit, incident, source) {
-                        if bounce == 0 && !start.has_extent {
+                        if bounce == 0 && !start.light.has_extent() {
                             ledger.unseen += power;
                             return;
                         }

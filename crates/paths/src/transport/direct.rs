@@ -1,6 +1,6 @@
 //! Light that comes straight from an emitter, by two techniques whose weights sum to one.
 
-use super::{Types, Vertex, World};
+use super::{Light, Types, Vertex, World};
 use crate::Heuristic;
 use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
 use fairflight_sources::UniformSource;
@@ -13,6 +13,21 @@ pub struct Scattered {
     pub vertex: Vertex,
     /// Density of that direction \[1/sr\].
     pub pdf_solid_angle: f64,
+}
+
+/// A point of an emitter, drawn for a vertex to be lit by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmitterSample<C> {
+    /// The emitter.
+    pub light: Light,
+    /// From the vertex to that point; endless for a direction.
+    pub segment: Segment,
+    /// What arrives along the segment if nothing takes of it: radiance, or irradiance of a light without extent.
+    pub arriving: C,
+    /// The density of the direction \[1/sr\]; none for a light without extent.
+    pub pdf_solid_angle: Option<f64>,
+    /// The density with which the vertex scatters into this direction \[1/sr\], positive.
+    pub scattered: f64,
 }
 
 impl<W: Types> World<'_, W> {
@@ -37,26 +52,51 @@ impl<W: Types> World<'_, W> {
         shadow: &mut W::Shadow,
         source: &mut impl UniformSource,
     ) -> W::Spectrum {
-        let phase = &self.volume.phase;
         let mut radiance = W::Spectrum::ZERO;
-        for light in &self.lights.sources {
+        self.sample_emitters(vertex, source, |sampled, source| {
+            let EmitterSample { ref segment, arriving, pdf_solid_angle, scattered, .. } = sampled;
+            let visibility = self.attenuated_visibility(segment, shadow, source);
+            radiance += match pdf_solid_angle {
+                None => arriving * (scattered * visibility),
+                Some(pdf) => {
+                    arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility)
+                }
+            };
+        });
+        radiance
+    }
+
+    /// Draws a point of each emitter that `vertex` may be lit by, and hands it to `seen` unless nothing of it is scattered back: the sampling of
+    /// [`emitters_at`](Self::emitters_at), without visibility and weights.
+    ///
+    /// **Law.** The sum of arriving · scattered/density over what `seen` is given has the expectation of the light of all emitters, but
+    /// for the constant background and for what a surface sees of itself, scattered per reflectance or albedo, as if nothing were between.
+    #[inline]
+    pub fn sample_emitters<S: UniformSource>(
+        &self,
+        vertex: &Vertex,
+        source: &mut S,
+        mut seen: impl FnMut(EmitterSample<W::Spectrum>, &mut S),
+    ) {
+        let phase = &self.volume.phase;
+        for (index, light) in self.lights.sources.iter().enumerate() {
             let Some(connection) = light.connect(vertex.position) else { continue };
-            let pdf = vertex.pdf_solid_angle(phase, connection.towards);
-            if pdf > 0.0 {
+            let scattered = vertex.pdf_solid_angle(phase, connection.towards);
+            if scattered > 0.0 {
                 let segment = vertex.leave(connection.towards, connection.distance.unwrap_or(f64::INFINITY));
-                let visibility = self.attenuated_visibility(&segment, shadow, source);
-                radiance += connection.irradiance * (pdf * visibility);
+                let (light, arriving) = (Light::Source(index), connection.irradiance);
+                seen(EmitterSample { light, segment, arriving, pdf_solid_angle: None, scattered }, source);
             }
         }
-        for map in &self.lights.background.maps {
+        for (index, map) in self.lights.background.maps.iter().enumerate() {
             let [choice, u, v] = std::array::from_fn(|_| source.next_uniform());
             let Some((towards, arriving)) = map.sample(choice, u, v) else { continue };
             let scattered = vertex.pdf_solid_angle(phase, towards);
             if scattered > 0.0 {
-                let pdf = map.pdf_solid_angle(towards);
+                let pdf_solid_angle = Some(map.pdf_solid_angle(towards));
                 let segment = vertex.leave(towards, f64::INFINITY);
-                let visibility = self.attenuated_visibility(&segment, shadow, source);
-                radiance += arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility);
+                let light = Light::Map(index);
+                seen(EmitterSample { light, segment, arriving, pdf_solid_angle, scattered }, source);
             }
         }
         for &index in self.surfaces.emitters() {
@@ -70,13 +110,11 @@ impl<W: Types> World<'_, W> {
             if scattered > 0.0 {
                 let towards = vertex.leave(sample.direction, sample.distance);
                 let segment = Segment { to: Some(index), ..towards };
-                let visibility = self.attenuated_visibility(&segment, shadow, source);
-                let pdf = sample.pdf_solid_angle;
-                let emission = self.surfaces.surfaces()[index].emission;
-                radiance += emission * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility);
+                let pdf_solid_angle = Some(sample.pdf_solid_angle);
+                let (light, arriving) = (Light::Surface(index), self.surfaces.surfaces()[index].emission);
+                seen(EmitterSample { light, segment, arriving, pdf_solid_angle, scattered }, source);
             }
         }
-        radiance
     }
 
     /// The radiance that a surface emits towards a path that met it along `direction`: whole for one from the camera or a smooth surface, weighted against

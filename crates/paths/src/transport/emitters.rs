@@ -4,7 +4,7 @@ use fairflight_media::Line;
 use fairflight_scene::{Geometry, Lights, Segment, Spectrum, Surface, cosine_hemisphere};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 /// All emitters of a scene, chosen in proportion to their power.
 #[derive(Clone, Debug)]
@@ -17,22 +17,38 @@ pub struct Emitters<C> {
 
 #[derive(Clone, Copy, Debug)]
 struct Emitter<C> {
-    kind: Kind,
+    light: Light,
+    sides: Sides,
     power: C,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    /// One of `Lights::emit`.
-    Light(usize),
-    /// A surface, and which of its sides.
-    Surface(usize, Sides),
+/// One emitter of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Light {
+    /// The constant part of the background.
+    Constant,
+    /// A map of the background, by its index.
+    Map(usize),
+    /// A light without extent, by its index.
+    Source(usize),
+    /// A surface, by its index.
+    Surface(usize),
+}
+
+impl Light {
+    /// Whether a direction may meet the emitter by chance; not one of a point or of a direction.
+    #[must_use]
+    pub fn has_extent(self) -> bool {
+        !matches!(self, Self::Source(_))
+    }
 }
 
 /// Sides of a surface that send light to where it can be seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sides {
+pub enum Sides {
+    /// Both of them, each with half of the light paths.
     Both,
+    /// The outer side of a closed surface.
     Outer,
 }
 
@@ -43,8 +59,11 @@ pub struct Start<C> {
     pub segment: Segment,
     /// The power of all emitters, if this is the only light path.
     pub power: C,
-    /// True if a direction may meet the emitter by chance; false for a point or a direction.
-    pub has_extent: bool,
+    /// The emitter.
+    pub light: Light,
+    /// The probability of the emitter, times the density of the start on it: of the point on a surface \[1/length²\], of the direction
+    /// in which light of the background arrives \[1/sr\], 1 for a light without extent.
+    pub pdf: f64,
 }
 
 impl<C: Spectrum> Emitters<C> {
@@ -57,14 +76,22 @@ impl<C: Spectrum> Emitters<C> {
         ball: (DVec3, f64),
         observer: DVec3,
     ) -> Self {
-        let of_lights = (0..lights.emitters())
-            .map(|index| Emitter { kind: Kind::Light(index), power: lights.power(index, ball.1) });
+        // In the order of `Lights::emit`.
+        let constant = (lights.background.constant != C::ZERO).then_some(Light::Constant);
+        let maps = (0..lights.background.maps.len()).map(Light::Map);
+        let sources = (0..lights.sources.len()).map(Light::Source);
+        let of_lights =
+            constant.into_iter().chain(maps).chain(sources).enumerate().map(|(index, light)| Emitter {
+                light,
+                sides: Sides::Outer,
+                power: lights.power(index, ball.1),
+            });
         let of_surfaces = geometry.emitters().iter().map(|&index| {
             let surface = &geometry.surfaces()[index];
             let sides = Sides::seen(surface, observer);
             let count = if sides == Sides::Both { 2.0 } else { 1.0 };
             let power = surface.emission * (PI * surface.shape.area() * count);
-            Emitter { kind: Kind::Surface(index, sides), power }
+            Emitter { light: Light::Surface(index), sides, power }
         });
         let list: Vec<Emitter<C>> = of_lights.chain(of_surfaces).collect();
         let mut sum = 0.0;
@@ -84,6 +111,31 @@ impl<C: Spectrum> Emitters<C> {
         self.list.iter().fold(C::ZERO, |sum, emitter| sum + emitter.power)
     }
 
+    /// The probability that a light path starts on `light` \[1\]; 0 where it has no power, or is none of these.
+    #[must_use]
+    pub fn pmf(&self, light: Light) -> f64 {
+        match (self.find(light), self.cumulative.last()) {
+            (Some(emitter), Some(&total)) if total > 0.0 => emitter.power.max_channel() / total,
+            _ => 0.0,
+        }
+    }
+
+    /// The sides of `light` on which light paths start; the outer one where that means nothing.
+    #[must_use]
+    pub fn sides(&self, light: Light) -> Sides {
+        self.find(light).map_or(Sides::Outer, |emitter| emitter.sides)
+    }
+
+    /// The area of the disc that infinitely far light crosses to meet the scene \[length²\].
+    #[must_use]
+    pub fn disc(&self) -> f64 {
+        PI * self.ball.1 * self.ball.1
+    }
+
+    fn find(&self, light: Light) -> Option<&Emitter<C>> {
+        self.list.iter().find(|emitter| emitter.light == light)
+    }
+
     /// Draws the start of a light path; `None` if nothing shines.
     pub fn sample<G: Geometry<C>>(
         &self,
@@ -94,26 +146,30 @@ impl<C: Spectrum> Emitters<C> {
         let total = self.cumulative.last().copied().filter(|&total| total > 0.0)?;
         let target = source.next_uniform() * total;
         let index = self.cumulative.partition_point(|&sum| sum <= target).min(self.list.len() - 1);
-        let Emitter { kind, power } = self.list[index];
+        let Emitter { light, sides, power } = self.list[index];
         let pmf = power.max_channel() / total;
         let free = |line| Segment { line, length: f64::INFINITY, from: None, to: None };
-        Some(match kind {
-            Kind::Light(light) => {
+        Some(match light {
+            Light::Constant | Light::Map(_) | Light::Source(_) => {
                 let u = std::array::from_fn(|_| source.next_uniform());
-                let photon = lights.emit(light, self.ball, u)?;
+                let photon = lights.emit(index, self.ball, u)?;
                 let line = Line { origin: photon.origin, direction: photon.direction };
-                // The background comes first.
-                let has_extent = light + lights.sources.len() < lights.emitters();
-                Start { segment: free(line), power: photon.power * (1.0 / pmf), has_extent }
+                let pdf = match light {
+                    Light::Constant => pmf * (0.25 * FRAC_1_PI),
+                    Light::Map(map) => pmf * lights.background.maps[map].pdf_solid_angle(-photon.direction),
+                    Light::Source(_) | Light::Surface(_) => pmf,
+                };
+                Start { segment: free(line), power: photon.power * (1.0 / pmf), light, pdf }
             }
-            Kind::Surface(surface, sides) => {
+            Light::Surface(surface) => {
                 let [u, v, side, s, t] = std::array::from_fn(|_| source.next_uniform());
-                let point = geometry.surfaces()[surface].shape.sample_area(u, v);
+                let shape = &geometry.surfaces()[surface].shape;
+                let point = shape.sample_area(u, v);
                 let inner = sides == Sides::Both && side < 0.5;
                 let normal = if inner { -point.normal } else { point.normal };
                 let line = Line { origin: point.position, direction: cosine_hemisphere(normal, s, t) };
                 let segment = Segment { from: Some(surface), ..free(line) };
-                Start { segment, power: power * (1.0 / pmf), has_extent: true }
+                Start { segment, power: power * (1.0 / pmf), light, pdf: pmf / shape.area() }
             }
         })
     }
@@ -124,21 +180,32 @@ impl Sides {
         let closed = surface.is_opaque() && surface.shape.is_closed();
         if closed && !surface.shape.encloses(observer) { Self::Outer } else { Self::Both }
     }
+
+    /// The density of the direction in which a light path leaves its start, per projected solid angle; `cosine` is that of the angle to the outer normal
+    /// \[1/sr\].
+    #[must_use]
+    pub fn pdf_projected(self, cosine: f64) -> f64 {
+        match self {
+            Self::Both => 0.5 * FRAC_1_PI,
+            Self::Outer if cosine > 0.0 => FRAC_1_PI,
+            Self::Outer => 0.0,
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{Scene, ball, diffuse, square, vacuum};
+    use super::super::fixtures::{Scene, ball, diffuse, square, vacuum};
     use fairflight_media::EmptySpace;
-    use fairflight_scene::{EnvironmentMap, Material, Source};
+    use fairflight_scene::{Background, EnvironmentMap, Material, NoSurfaces, Source};
     use fairflight_sources::Scripted;
     use glam::dvec3;
 
     const BALL: (DVec3, f64) = (DVec3::ZERO, 2.0);
     const FAR: DVec3 = DVec3::new(50.0, 0.0, 0.0);
 
-    fn emitters(scene: &Scene<EmptySpace, f64>, observer: DVec3) -> Emitters<f64> {
+    fn emitters(scene: &Scene<EmptySpace>, observer: DVec3) -> Emitters<f64> {
         Emitters::new(&scene.lights, &scene.surfaces, BALL, observer)
     }
 
@@ -175,16 +242,25 @@ mod tests {
         // 4π · π 2², of radiance 1 in all, and a point as bright.
         let emitters = emitters(&scene, FAR);
         assert!((emitters.power() - 32.0 * PI * PI).abs() < 1e-12);
-        for (u, has_extent) in [(0.1, true), (0.4, true), (0.6, false)] {
+        let over_sphere = 0.25 * FRAC_1_PI;
+        let lights = [
+            (0.1, Light::Constant, 0.125 * over_sphere),
+            (0.4, Light::Map(0), 0.375 * over_sphere),
+            (0.6, Light::Source(0), 0.5),
+        ];
+        for (u, light, pdf) in lights {
             let mut source = Scripted::new([u, 0.5, 0.5, 0.5, 0.5, 0.5]);
             let start = emitters.sample(&scene.lights, &scene.surfaces, &mut source).unwrap();
-            assert_eq!(start.has_extent, has_extent);
+            assert_eq!((start.light, light.has_extent()), (light, !matches!(light, Light::Source(_))));
+            assert!((start.pdf - pdf).abs() < 1e-15);
+            let pmf = if light.has_extent() { pdf / over_sphere } else { pdf };
+            assert!((emitters.pmf(light) - pmf).abs() < 1e-15);
             assert!((start.power - 32.0 * PI * PI).abs() < 1e-12);
         }
     }
 
     /// A point light of power 1, a lamp of 3 on both sides together, and one that is black.
-    fn mixed() -> Scene<EmptySpace, f64> {
+    fn mixed() -> Scene<EmptySpace> {
         let lamp = square(1.0, 0.5, diffuse(0.0), 1.5 / PI);
         let dark = square(2.0, 0.5, diffuse(0.0), 0.0);
         vacuum(vec![dark, lamp], vec![Source::point(dvec3(0.0, 0.0, 5.0), 1.0).unwrap()])
@@ -205,7 +281,8 @@ mod tests {
             let light = start(&[u, 0.5, 0.25, 0.9, 0.9, 0.9]);
             assert_eq!(light.segment.line.origin, dvec3(0.0, 0.0, 5.0));
             assert!((light.segment.line.direction - DVec3::Y).length() < 1e-15);
-            assert_eq!((light.segment.from, light.segment.to, light.has_extent), (None, None, false));
+            assert_eq!((light.segment.from, light.segment.to, light.light), (None, None, Light::Source(0)));
+            assert!((light.pdf - 0.25).abs() < 1e-15);
             assert!((light.power - 4.0).abs() < 1e-14);
         }
         for u in [0.250_001, 0.7, 1.0 - f64::EPSILON] {
@@ -214,10 +291,24 @@ mod tests {
                 assert_eq!(lamp.segment.line.origin, dvec3(0.0, -0.25, 1.0));
                 assert_eq!(lamp.segment.line.direction, normal);
                 assert_eq!((lamp.segment.from, lamp.segment.length), (Some(1), f64::INFINITY));
-                assert!(lamp.has_extent);
+                assert_eq!(lamp.light, Light::Surface(1));
+                assert!((lamp.pdf - 0.75).abs() < 1e-15, "on the area 1: {}", lamp.pdf);
                 assert!((lamp.power - 4.0).abs() < 1e-14);
             }
         }
+    }
+
+    #[test]
+    fn what_is_no_emitter_is_never_chosen() {
+        let emitters = emitters(&mixed(), FAR);
+        for light in [Light::Constant, Light::Map(0), Light::Source(1), Light::Surface(0)] {
+            assert_eq!(emitters.pmf(light), 0.0, "{light:?}");
+        }
+        assert_eq!(emitters.sides(Light::Surface(1)), Sides::Both);
+        assert!((emitters.disc() - 4.0 * PI).abs() < 1e-14);
+        // Over the projected hemispheres both densities integrate to one: π on each side.
+        assert!((2.0 * PI * Sides::Both.pdf_projected(-0.3) - 1.0).abs() < 1e-15);
+        assert_eq!((PI * Sides::Outer.pdf_projected(0.3), Sides::Outer.pdf_projected(-0.3)), (1.0, 0.0));
     }
 
     #[test]
@@ -245,12 +336,12 @@ mod tests {
     fn colours_are_chosen_by_their_greatest_channel() {
         let red = Source::point(DVec3::ZERO, dvec3(3.0, 0.0, 0.0)).unwrap();
         let gray = Source::point(DVec3::ONE, DVec3::ONE).unwrap();
-        let scene = vacuum(vec![], vec![red, gray]);
-        let emitters = Emitters::new(&scene.lights, &scene.surfaces, BALL, FAR);
+        let lights = Lights { background: Background::dark(), sources: vec![red, gray] };
+        let emitters = Emitters::new(&lights, &NoSurfaces, BALL, FAR);
         assert_eq!(emitters.power(), dvec3(4.0, 1.0, 1.0));
         let start = |u: f64| {
             let mut source = Scripted::new([u, 0.5, 0.5, 0.5, 0.5, 0.5]);
-            emitters.sample(&scene.lights, &scene.surfaces, &mut source).unwrap().power
+            emitters.sample(&lights, &NoSurfaces, &mut source).unwrap().power
         };
         assert!((start(0.74) - dvec3(4.0, 0.0, 0.0)).length() < 1e-14);
         assert!((start(0.76) - DVec3::splat(4.0)).length() < 1e-14);
