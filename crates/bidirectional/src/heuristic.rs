@@ -4,8 +4,8 @@ use fairflight_paths::Heuristic;
 
 /// A heuristic (veach-1995, antwerpen-2011 section 3.6) on logarithms, which do not underflow.
 ///
-/// With b = 1 (balance), b = 2 (power) or b → ∞ (maximum) the weight of a strategy of density p is p^b/Σ p_j^b. Logarithms are scaled once, by b; from then on
-/// sums of powers are [`add`](Self::add), whatever b is.
+/// With b = 1 (balance), b = 2 (power) or b → ∞ (maximum) the weight of a strategy of density p is p^b/Σ p_j^b. Logarithms are
+/// scaled once, by b; from then on sums of powers are [`add`](Self::add), whatever b is.
 ///
 /// **Law.** The weights of all strategies of a path sum to 1.
 pub trait LogHeuristic: Copy {
@@ -15,13 +15,14 @@ pub trait LogHeuristic: Copy {
     /// ln(e^a + e^b); the greater one for the maximum.
     fn add(self, a: f64, b: f64) -> f64;
 
-    /// The weight of a strategy, where the others have the sums `fewer` and `more` of scaled densities relative to its own: those with fewer vertices on the eye
-    /// subpath, and those with more.
+    /// The weight of a strategy, where the others have the sums `fewer` and `more` of scaled densities relative to its own: those
+    /// with fewer vertices on the eye subpath, and those with more.
     fn weight(self, fewer: f64, more: f64) -> f64;
 }
 
-/// Logarithms of equal densities differ by rounding: 1e3 roundings of sums of the size 1e3, with room. Of two that are nearer the maximum takes the one with fewer
-/// vertices on the eye subpath. Densities of paths at random are as near with a probability of that size.
+/// Logarithms of equal densities differ by rounding: 1e3 roundings of sums of the size 1e3, with room. Of two that are nearer the
+/// maximum takes the one with fewer vertices on the eye subpath. Densities of paths at random are as near with a probability of
+/// that size.
 const TIE: f64 = 1e-9;
 
 impl LogHeuristic for Heuristic {
@@ -63,10 +64,9 @@ mod tests {
         for heuristic in ALL {
             for (own, other) in [(1.0f64, 3.0f64), (2.0, 0.5), (1e-150, 1e-152)] {
                 let ratio = heuristic.scale(other.ln() - own.ln());
-                for weight in [
-                    heuristic.weight(ratio, f64::NEG_INFINITY),
-                    heuristic.weight(f64::NEG_INFINITY, ratio),
-                ] {
+                for weight in
+                    [heuristic.weight(ratio, f64::NEG_INFINITY), heuristic.weight(f64::NEG_INFINITY, ratio)]
+                {
                     assert!((weight - heuristic.mis_weight(own, other)).abs() < 1e-13, "{heuristic:?}");
                 }
             }

@@ -19,17 +19,22 @@ use std::fmt;
 /// each times its weight
 /// ```
 ///
-/// **Law.** The mean of [`radiance`](Self::radiance) over rays through a pixel, plus the sum of what [`light_image`](Self::light_image) adds to that pixel by n_L light paths, has the
-/// expectation of [`PathTracer`](fairflight_paths::PathTracer): the three point form (raab-2008 eq. 5) with all its orders. With
-/// [`point_caustics`](Walking::point_caustics) light that a point or a direction sends straight into smooth surfaces comes on top of that.
+/// **Law.** The mean of [`radiance`](Self::radiance) over rays through a pixel, plus the sum of what
+/// [`light_image`](Self::light_image) adds to that pixel by n_L light paths, has the expectation of
+/// [`PathTracer`](fairflight_paths::PathTracer): the three point form (raab-2008 eq. 5) with all its orders. With
+/// [`point_caustics`](Walking::point_caustics) light that a point or a direction sends straight into smooth surfaces comes on top
+/// of that.
 ///
-/// A light seen directly is found by s = 0 alone. Light of a point or a direction in a chain of smooth surfaces that ends at the camera is found by nothing.
+/// A light seen directly is found by s = 0 alone. Light of a point or a direction in a chain of smooth surfaces that ends at the
+/// camera is found by nothing.
 ///
-/// **Assumes** that the sampling extinction is positive where the extinction is, and nothing else of walks: densities stand in weights only.
+/// **Assumes** that the sampling extinction is positive where the extinction is, and nothing else of walks: densities stand in
+/// weights only.
 ///
-/// **Variance.** One connection in the medium has no second moment, 1/r². Weighted it has: by the balance heuristic w f/p = f/Σ p_j, and p_j has all factors 1/r² of
-/// f but that of its own edge, so that a contribution is at most a constant/Σ r_j² over the edges that may be connected; these are as long as the path together.
-/// That holds for point lights, too, of which a path tracer has no second moment. Densities must have 1/r² and the extinction for that.
+/// **Variance.** One connection in the medium has no second moment, 1/r². Weighted it has: by the balance heuristic w f/p = f/Σ
+/// p_j, and p_j has all factors 1/r² of f but that of its own edge, so that a contribution is at most a constant/Σ r_j² over the
+/// edges that may be connected; these are as long as the path together. That holds for point lights, too, of which a path tracer
+/// has no second moment. Densities must have 1/r² and the extinction for that.
 ///
 /// ```
 /// use fairflight_bidirectional::{Bidirectional, Exact, Subpath, Walking, Weigh};
@@ -116,10 +121,11 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Bidirectional<'s, W, K> {
         Self { weigh, walking, shadow, connection_roulette: None, eye: Subpath::empty(), truncated: 0 }
     }
 
-    /// The same, making a connection whose contribution would be u without anything between with the probability min(1, |u|/`threshold`) only, and
-    /// dividing by that.
+    /// The same, making a connection whose contribution would be u without anything between with the probability min(1,
+    /// |u|/`threshold`) only, and dividing by that.
     ///
-    /// No bias for a threshold \[radiance\] above 0 that does not depend on the sample. It saves look-ups for transmittance, at the price of variance.
+    /// No bias for a threshold \[radiance\] above 0 that does not depend on the sample. It saves look-ups for transmittance, at the
+    /// price of variance.
     #[must_use]
     pub fn with_connection_roulette(self, threshold: Option<f64>) -> Self {
         Self { connection_roulette: threshold, ..self }
@@ -172,7 +178,9 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Bidirectional<'s, W, K> {
         for (index, step) in eye.steps.iter().enumerate() {
             let t = index as u32 + 2;
             let previous = index.checked_sub(1).map(|before| &eye.steps[before].node);
-            self.met(step, previous, |found| each(&eye, Found { strategy: Strategy { light: 0, eye: t }, ..found }));
+            self.met(step, previous, |found| {
+                each(&eye, Found { strategy: Strategy { light: 0, eye: t }, ..found });
+            });
             if step.scattered == W::Spectrum::ZERO {
                 continue;
             }
@@ -274,9 +282,8 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Bidirectional<'s, W, K> {
         (light, at): (Light, DVec3),
     ) -> Found<W::Spectrum> {
         let Weigh { world, emitters, .. } = &self.weigh;
-        let weight = previous.map_or(1.0, |node| {
-            self.weigh.at_light(node, &LightEnd::new(world, emitters, light, at)).met
-        });
+        let weight = previous
+            .map_or(1.0, |node| self.weigh.at_light(node, &LightEnd::new(world, emitters, light, at)).met);
         let strategy = Strategy { light: 0, eye: 0 };
         Found { strategy, value: bare * weight, weight, end: Some((light, at)) }
     }

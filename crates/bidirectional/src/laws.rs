@@ -1,4 +1,5 @@
-//! Weights of a whole path, twice: recursively, as the integrator has them, and by all densities of all strategies (antwerpen-2011 section 5.2).
+//! Weights of a whole path, twice: recursively, as the integrator has them, and by all densities of all strategies (antwerpen-2011
+//! section 5.2).
 //!
 //! For tests: the second takes quadratic time, and nothing of the first enters it but the densities of single vertices.
 
@@ -52,7 +53,8 @@ pub enum Side {
 pub type Weights = Vec<f64>;
 
 impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
-    /// The recursive weights of all strategies. `twist` may change each node of either subpath, numbered from 0, before the next one is made of it: a mistake to be found.
+    /// The recursive weights of all strategies. `twist` may change each node of either subpath, numbered from 0, before the next
+    /// one is made of it: a mistake to be found.
     pub fn recursive(&self, path: &Path<'_>, mut twist: impl FnMut(Side, usize, &mut Node)) -> Weights {
         let Path { places, end } = path;
         let k = places.len() + 1;
@@ -80,7 +82,9 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
                 0 => at_light.met,
                 1 => at_light.sampled,
                 // x_1 is the last node of the light subpath, x_t the one with k − 1 − t before it.
-                _ if t == 1 => light.last().filter(|z| z.place.is_connectable()).map_or(0.0, |z| self.light_image(z)),
+                _ if t == 1 => {
+                    light.last().filter(|z| z.place.is_connectable()).map_or(0.0, |z| self.light_image(z))
+                }
                 _ => {
                     let (y, z) = (&eye[t - 2], &light[k - 1 - t]);
                     let connectable = y.place.is_connectable() && z.place.is_connectable();
@@ -200,4 +204,3 @@ fn accurate_sum(terms: impl Iterator<Item = f64>) -> f64 {
     }
     sum + lost
 }
-

@@ -9,8 +9,9 @@
 //! | [`WeightThickness`] | raab-2008 4.3 | optical thickness in weights: deterministic |
 //! | [`laws`] | antwerpen-2011 3.6, 5.2 | weights of a whole path by all its densities, for tests |
 //!
-//! Densities never enter a contribution: that is the product of what two walks carry and of one random transmittance. They enter weights, which may be any functions of the path that
-//! sum to one over the strategies that can make it. A surrogate of a density is therefore lawful, an inconsistency is not.
+//! Densities never enter a contribution: that is the product of what two walks carry and of one random transmittance. They enter
+//! weights, which may be any functions of the path that sum to one over the strategies that can make it. A surrogate of a density
+//! is therefore lawful, an inconsistency is not.
 //!
 //! ```
 //! use fairflight_bidirectional::LogHeuristic;

@@ -16,7 +16,8 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// | map | pmf · its density | its density | D E/(π R²) |
 /// | constant | pmf/(4π) | none | D E/(π R²) |
 ///
-/// R is the radius of the ball through whose disc infinitely far light comes. Infinitely far ends are directions, in the measure of solid angle.
+/// R is the radius of the ball through whose disc infinitely far light comes. Infinitely far ends are directions, in the measure of
+/// solid angle.
 #[derive(Clone, Copy, Debug)]
 pub struct LightEnd<'s> {
     kind: Kind<'s>,
@@ -55,9 +56,7 @@ impl<'s> LightEnd<'s> {
                 let pdf = world.lights.background.maps[index].pdf_solid_angle(at);
                 Kind::Sky { towards: at, disc, pdf_start: pdf, pdf_direct: pdf }
             }
-            Light::Constant => {
-                Kind::Sky { towards: at, disc, pdf_start: 0.25 * FRAC_1_PI, pdf_direct: 0.0 }
-            }
+            Light::Constant => Kind::Sky { towards: at, disc, pdf_start: 0.25 * FRAC_1_PI, pdf_direct: 0.0 },
         };
         Self { kind, light, pmf: emitters.pmf(light) }
     }

@@ -34,8 +34,9 @@ pub enum Site {
 
 /// A vertex between the two ends of a path, however it was found.
 ///
-/// Densities are functions of positions: directions are differences of them, and not those that a walk drew, so that a path has one set of densities whichever strategy
-/// made it. None is 0: where rounding says so it is [`f64::MIN_POSITIVE`], which as any other number is lawful in a weight.
+/// Densities are functions of positions: directions are differences of them, and not those that a walk drew, so that a path has one
+/// set of densities whichever strategy made it. None is 0: where rounding says so it is [`f64::MIN_POSITIVE`], which as any other
+/// number is lawful in a weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Where.
@@ -89,9 +90,9 @@ impl Place {
 
     /// The density, survival included, of leaving along `outgoing` what arrived along `incident` \[1/sr\].
     ///
-    /// On a smooth surface the Dirac of both directions is left out, as is Fresnel's probability, which is the same both ways: what remains of the ratio of the
-    /// true densities is |cosine| · ratio of indices on either side. n² dσ⊥ dA is the same before and behind the surface, so that forward over backward
-    /// density is p(a) n_b²/(p(b) n_a²) = (p(a) c)/(p(b)/c) with c = n_b/n_a.
+    /// On a smooth surface the Dirac of both directions is left out, as is Fresnel's probability, which is the same both ways: what
+    /// remains of the ratio of the true densities is |cosine| · ratio of indices on either side. n² dσ⊥ dA is the same before and
+    /// behind the surface, so that forward over backward density is p(a) n_b²/(p(b) n_a²) = (p(a) c)/(p(b)/c) with c = n_b/n_a.
     #[inline]
     #[must_use]
     pub(crate) fn scatter<P: PhaseFunction>(&self, phase: &P, incident: DVec3, outgoing: DVec3) -> f64 {
@@ -106,8 +107,8 @@ impl Place {
 
 /// A vertex v_i of a subpath (i = 1 at the camera or the light), with logarithms of densities in the measure of its place: area or volume.
 ///
-/// Arrows are relative to the direction of the subpath: P→ as it was drawn, P← against it (antwerpen-2011 section 5.3, with the distance densities that its errata
-/// ask for in a medium: raab-2008 eq. 12).
+/// Arrows are relative to the direction of the subpath: P→ as it was drawn, P← against it (antwerpen-2011 section 5.3, with the
+/// distance densities that its errata ask for in a medium: raab-2008 eq. 12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
     /// The vertex.
@@ -118,8 +119,8 @@ pub struct Node {
     pub ln_forward: f64,
     /// ln of D E/r² at v_(i−1): what P←(v_(i−1)) has, besides the density of the direction.
     pub ln_geometry: f64,
-    /// ln 1 if v_(i−1) and v_i may be connected, else ln 0; at the first node the number of samples and the density of the strategy that ends here, relative to
-    /// the others (ln n_L of the light image, ln P_dir/P_sub of next-event estimation).
+    /// ln 1 if v_(i−1) and v_i may be connected, else ln 0; at the first node the number of samples and the density of the strategy
+    /// that ends here, relative to the others (ln n_L of the light image, ln P_dir/P_sub of next-event estimation).
     pub ln_connectable: f64,
     /// The recursive sum of v_(i−1), scaled by the heuristic.
     pub ln_before: f64,
@@ -158,7 +159,8 @@ impl Node {
     /// l_i = add( chi_(i−1),  ln P←(v_(i−1)) + l_(i−1) ) − ln P→(v_i)
     /// ```
     ///
-    /// antwerpen-2011 section 5.3, in logarithms. The direction is needed for P←, which is why it is finished here and not when the node is made.
+    /// antwerpen-2011 section 5.3, in logarithms. The direction is needed for P←, which is why it is finished here and not when the
+    /// node is made.
     #[inline]
     #[must_use]
     pub(crate) fn ln_others<P: PhaseFunction>(

@@ -1,12 +1,13 @@
-//! Subpaths from the camera and from the lights: one loop for both.
+//! Subpaths from the camera and from the lights: one walk for both.
 
 use crate::{LightEnd, Node, Weigh, WeightThickness};
 use fairflight_media::Line;
 use fairflight_paths::Walk;
-use fairflight_paths::transport::{Event, Start, Types};
-use fairflight_scene::{Geometry, Segment, Spectrum};
+use fairflight_paths::transport::{Carried, Met, Start, Types, WalkEnd};
+use fairflight_scene::{Segment, Spectrum};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
+use std::ops::ControlFlow;
 
 /// A node with what the walk carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +22,9 @@ pub struct Step<C> {
 
 /// The vertices of a subpath behind its first one, which is the pinhole or on a light.
 ///
-/// **Law.** E\[Σ arriving · φ(v_1 … v_t)\] = ∫ f φ over paths, f = the product of all that light meets up to the arrival at v_t, for every bounded φ and every t,
-/// whatever the sampling extinction of the walk and the sign of its energies: the law of [`World::follow`](fairflight_paths::transport::World::follow), step by step.
+/// **Law.** E\[Σ arriving · φ(v_1 … v_t)\] = ∫ f φ over paths, f = the product of all that light meets up to the arrival at v_t,
+/// for every bounded φ and every t, whatever the sampling extinction of the walk and the sign of its energies: the law of
+/// [`World::follow`](fairflight_paths::transport::World::follow), step by step.
 #[derive(Clone, Debug)]
 pub struct Subpath<C> {
     /// v_2, v_3, ….
@@ -63,8 +65,8 @@ pub struct Walking<R> {
     pub walk: Walk<R>,
     /// Vertices of a subpath behind its first one; longer ones are cut, a bias.
     pub max_vertices: u32,
-    /// Whether light of a point or a direction is followed straight into smooth surfaces: the path tracer does not see it, since no direction meets the light by chance
-    /// and no connection passes the surface.
+    /// Whether light of a point or a direction is followed straight into smooth surfaces: the path tracer does not see it, since no
+    /// direction meets the light by chance and no connection passes the surface.
     pub point_caustics: bool,
 }
 
@@ -86,7 +88,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
     ) {
         subpath.clear();
         let segment = Segment { line: *line, length: f64::INFINITY, from: None, to: None };
-        self.extend(walking, subpath, None, segment, W::Spectrum::splat(1.0), source);
+        self.extend(walking, subpath, None, (segment, W::Spectrum::splat(1.0)), source);
     }
 
     /// Fills `subpath` with a walk from a light, which carries all power.
@@ -101,7 +103,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         let Some(start) = self.emitters.sample(world.lights, world.surfaces, source) else { return };
         subpath.start = Some(start);
         let end = self.end_of(&start);
-        self.extend(walking, subpath, Some(&end), start.segment, start.power, source);
+        self.extend(walking, subpath, Some(&end), (start.segment, start.power), source);
     }
 
     /// The light end of a light subpath.
@@ -111,90 +113,56 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         LightEnd::new(&self.world, self.emitters, start.light, at)
     }
 
-    /// The loop of both: as that of a path tracer, but for what smooth surfaces do to radiance from the camera and not to power from a light.
+    /// The walk of both.
     #[inline(never)]
     fn extend(
         &self,
         walking: &Walking<W::Sampling>,
         subpath: &mut Subpath<W::Spectrum>,
         light: Option<&LightEnd<'_>>,
-        mut segment: Segment,
-        mut throughput: W::Spectrum,
+        start: (Segment, W::Spectrum),
         source: &mut impl UniformSource,
     ) {
-        let world = &self.world;
-        let walk = &walking.walk;
-        let collisions = world.collisions(walk);
-        let first = match light {
-            Some(end) => end.position(),
-            None => Some(self.camera.origin()),
+        let (kind, first) = match light {
+            Some(end) => (Carried::Power, end.position()),
+            None => (Carried::Radiance, Some(self.camera.origin())),
         };
-        for _ in 0..walking.max_vertices {
-            let hit = world.surfaces.intersect(&segment);
-            segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
-            let incident = segment.line.direction;
-            let mut passage = None;
-            let (place, scattering) = match world.follow(walk, &collisions, &segment, source) {
-                Event::Scattered { vertex, energy } => {
-                    (self.place_in_medium(vertex.position), Some((vertex, energy)))
+        let is_followed = |steps: &[Step<W::Spectrum>]| {
+            walking.point_caustics || !steps.is_empty() || light.is_none_or(|end| end.light().has_extent())
+        };
+        let limits = (&walking.walk, walking.max_vertices);
+        let end = self.world.random_walk(limits, start, kind, source, |met, _, arriving, _| {
+            let (place, scattered) = match met {
+                Met::Smooth { hit, passage } => {
+                    if !is_followed(&subpath.steps) {
+                        subpath.unseen = Some(arriving);
+                        return ControlFlow::Break(());
+                    }
+                    // Radiance is scaled by 1/ratio².
+                    (self.place_on(&hit, 1.0 / passage.radiance_scale.sqrt()), W::Spectrum::ZERO)
                 }
-                Event::Passed { weight } => {
-                    throughput = throughput * weight;
-                    let Some(hit) = hit else {
-                        subpath.escape = Some((incident, throughput));
-                        return;
-                    };
-                    passage = world.pass(&hit, incident, source);
-                    let ratio = passage.map_or(1.0, |passage| 1.0 / passage.radiance_scale.sqrt());
-                    (self.place_on(&hit, ratio), world.diffuse_vertex(&hit))
-                }
-                Event::Absorbed => return,
-                Event::Truncated => {
-                    subpath.is_cut = true;
-                    return;
+                Met::Vertex { factor, hit: Some(hit), .. } => (self.place_on(&hit, 1.0), arriving * factor),
+                Met::Vertex { vertex, factor, hit: None } => {
+                    (self.place_in_medium(vertex.position), arriving * factor)
                 }
             };
-            let is_first = subpath.steps.is_empty();
-            if let Some(end) = light
-                && passage.is_some()
-                && is_first
-                && !end.light().has_extent()
-                && !walking.point_caustics
-            {
-                subpath.unseen = Some(throughput);
-                return;
+            let last = subpath.steps.last().map(|step| &step.node);
+            // A step of no length has no direction: where rounding makes one, a set of measure zero, the walk ends.
+            if last.map(|node| node.place.position).or(first) == Some(place.position) {
+                return ControlFlow::Break(());
             }
-            // A step of no length has no direction: where rounding makes one, the walk ends.
-            let before = subpath.steps.last().map(|step| step.node.place.position).or(first);
-            if before == Some(place.position) {
-                return;
-            }
-            let node = match (subpath.steps.last(), light) {
-                (Some(step), _) => self.next(&step.node, place),
+            let node = match (last, light) {
+                (Some(previous), _) => self.next(previous, place),
                 (None, Some(end)) => self.first_of_light(end, place),
                 (None, None) => self.first_of_eye(place),
             };
-            let scattered =
-                scattering.map_or(W::Spectrum::ZERO, |(_, factor): (_, W::Spectrum)| throughput * factor);
-            subpath.steps.push(Step { node, arriving: throughput, scattered });
-            if let Some(passage) = passage {
-                if light.is_none() {
-                    throughput = throughput * passage.radiance_scale;
-                }
-                let line = Line { origin: place.position, direction: passage.direction };
-                segment = Segment { line, length: f64::INFINITY, from: place.surface(), to: None };
-                continue;
-            }
-            let (vertex, factor) = scattering.expect("what is not smooth scatters");
-            let survival = factor.magnitude().min(1.0);
-            if source.next_uniform() >= survival {
-                return;
-            }
-            throughput = scattered * (1.0 / survival);
-            let direction =
-                vertex.sample(&world.volume.phase, source.next_uniform(), source.next_uniform());
-            segment = vertex.leave(direction, f64::INFINITY);
+            subpath.steps.push(Step { node, arriving, scattered });
+            ControlFlow::Continue(())
+        });
+        match end {
+            WalkEnd::Escaped(direction, carried) => subpath.escape = Some((direction, carried)),
+            WalkEnd::Ended => {}
+            WalkEnd::Cut => subpath.is_cut = true,
         }
-        subpath.is_cut = true;
     }
 }

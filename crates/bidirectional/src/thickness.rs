@@ -8,8 +8,9 @@ use std::num::NonZeroU32;
 
 /// An optical thickness for densities in weights (raab-2008 section 4.3).
 ///
-/// **Law.** A function of the ray: no variate enters. Then weights are functions of the path, and any value makes them lawful; only the variance tells a good one. Whereas a
-/// random transmittance in a weight that belongs to a random transmittance in the contribution is a bias, however unbiased each is alone.
+/// **Law.** A function of the ray: no variate enters. Then weights are functions of the path, and any value makes them lawful; only
+/// the variance tells a good one. Whereas a random transmittance in a weight that belongs to a random transmittance in the
+/// contribution is a bias, however unbiased each is alone.
 pub trait WeightThickness<M> {
     /// Along a ray in the medium \[1\].
     fn thickness(&self, ray: &Ray<&M>) -> f64;
@@ -96,7 +97,8 @@ mod tests {
         let volume = volume();
         let nodes = |n| Midpoint(NonZeroU32::new(n).unwrap());
         // Inside, across the bounds, and all the way through them.
-        let ends = [dvec3(0.1, -1.3, 0.7), dvec3(-1.9, 1.1, 0.3), dvec3(5.0, 0.4, -3.0), dvec3(-7.0, 1.0, 2.0)];
+        let ends =
+            [dvec3(0.1, -1.3, 0.7), dvec3(-1.9, 1.1, 0.3), dvec3(5.0, 0.4, -3.0), dvec3(-7.0, 1.0, 2.0)];
         let mut seen = 0.0;
         for a in ends {
             for b in ends.into_iter().filter(|&b| b != a) {

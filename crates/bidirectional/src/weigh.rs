@@ -17,15 +17,16 @@ use std::fmt;
 /// p_(s,t) = Π_(0<i<t) P→(x_i) · Π_(t≤j<k) P←(x_j) · P(x_k),     w_(s,t) = (n p)^b_(s,t) / Σ (n p)^b
 /// ```
 ///
-/// with P(x_k) = P→(x_k) for s = 0, P_dir for s = 1 and P_sub for s ≥ 2, and n = n_L light paths per image for t = 1, 1 per sample of a pixel otherwise.
-/// At a connection of y_t and z_s the sums over both sides are what [`Node`]s carry:
+/// with P(x_k) = P→(x_k) for s = 0, P_dir for s = 1 and P_sub for s ≥ 2, and n = n_L light paths per image for t = 1, 1 per sample
+/// of a pixel otherwise. At a connection of y_t and z_s the sums over both sides are what [`Node`]s carry:
 ///
 /// ```text
 /// 1/w = 1 + P←(y_t) · (strategies with fewer eye vertices) + P→(z_s) · (strategies with more)
 /// ```
 ///
-/// **Law.** The weights of a path sum to 1 over the strategies that can make it. The densities stand in weights only: any positive function of the path would do there, and
-/// what is left out of them (the variates of weighted walks, the probability of roulette in the medium's collisions) costs variance and no bias.
+/// **Law.** The weights of a path sum to 1 over the strategies that can make it. The densities stand in weights only: any positive
+/// function of the path would do there, and what is left out of them (the variates of weighted walks, the probability of roulette
+/// in the medium's collisions) costs variance and no bias.
 ///
 /// A strategy through a smooth surface does not exist, which the nodes know.
 pub struct Weigh<'s, W: Types, K> {
@@ -90,8 +91,9 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
 
     /// y_2, the first vertex of an eye subpath.
     ///
-    /// P→(y_2) = importance · D E: 1/(d² cos³ A) is the density of a point per pixel sample. antwerpen-2011 eq. 3.18 prints the inverse of that Jacobian; its sections
-    /// 4.1 to 6.5 use this one. Nothing ends at the camera without a light image: t = 0 has the density 0.
+    /// P→(y_2) = importance · D E: 1/(d² cos³ A) is the density of a point per pixel sample. antwerpen-2011 eq. 3.18 prints the
+    /// inverse of that Jacobian; its sections 4.1 to 6.5 use this one. Nothing ends at the camera without a light image: t = 0 has
+    /// the density 0.
     pub fn first_of_eye(&self, place: Place) -> Node {
         let origin = self.camera.origin();
         let incident = (place.position - origin).normalize();
@@ -156,8 +158,7 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
         let drawn = self.camera.importance(z.place.position) * z.place.facing(direction);
         let ln_drawn = drawn.ln() - thickness - self.light_paths.ln();
         let heuristic = self.heuristic;
-        let more = heuristic.scale(ln_drawn)
-            + z.ln_others(&self.world.volume.phase, heuristic, direction);
+        let more = heuristic.scale(ln_drawn) + z.ln_others(&self.world.volume.phase, heuristic, direction);
         heuristic.weight(f64::NEG_INFINITY, more)
     }
 
@@ -168,7 +169,8 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
         let (direction, _) = end.seen_from(place.position);
         let (phase, heuristic) = (&self.world.volume.phase, self.heuristic);
         let thickness = self.to_light(end, place);
-        // Three densities of one end: chosen for the vertex, met by a direction of it, or the start of a light path; behind the last the recursion goes on.
+        // Three densities of one end: chosen for the vertex, met by a direction of it, or the start of a light path; behind the
+        // last the recursion goes on.
         let sampled = if place.is_connectable() { end.pdf_direct(place).ln() } else { f64::NEG_INFINITY };
         let met = place.scatter(phase, y.incident, direction).ln() + end.ln_met(place) - thickness;
         let started = end.pdf_start().ln() + end.ln_emitted(place) - thickness;

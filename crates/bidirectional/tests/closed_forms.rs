@@ -21,7 +21,6 @@ const ALPHA: f64 = 1e-4;
 
 fn agrees(name: &str, found: &Moments, expected: f64) {
     let verdict = judge(found, &Reference::exact(expected).with_mild_tails(), ALPHA);
-    println!("{name}: z {:.2?}, {:.3?}", verdict.mean_z, verdict.detectable_relative_bias);
     assert_eq!(verdict.sound, Some(true), "{name}: {}", verdict.reason);
 }
 
@@ -81,8 +80,10 @@ fn a_furnace_is_equally_bright_in_every_pixel_and_colour() {
 
 /// A floor beside a wall, under a point light.
 fn floor(wall: Option<Material<f64>>, lights: &[DVec3]) -> (Surfaces<f64>, Lights<f64>) {
-    let mut surfaces = vec![rectangle([-1.0, 0.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0], diffuse(0.6), 0.0)];
-    surfaces.extend(wall.map(|wall| rectangle([-1.0, 0.0, -6.0], [0.0, 6.0, 0.0], [0.0, 0.0, 12.0], wall, 0.0)));
+    let mut surfaces =
+        vec![rectangle([-1.0, 0.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0], diffuse(0.6), 0.0)];
+    surfaces
+        .extend(wall.map(|wall| rectangle([-1.0, 0.0, -6.0], [0.0, 6.0, 0.0], [0.0, 0.0, 12.0], wall, 0.0)));
     let sources = lights.iter().map(|&at| Source::point(at, 10.0).unwrap()).collect();
     (Surfaces::new(surfaces), Lights { background: Background::dark(), sources })
 }
@@ -103,10 +104,17 @@ fn a_mirror_shows_a_floor_the_image_of_a_point_light_if_that_is_asked_for() {
     for (point_caustics, lights) in [(false, &[light][..]), (true, &[light, image][..])] {
         // Without a mirror, lit by the light and by its image behind the wall.
         let bare = floor(None, lights);
-        let mut tracer = PathTracer::new(World::new(&volume, &bare.0, &bare.1), walk, Regular, Heuristic::Balance);
+        let mut tracer =
+            PathTracer::new(World::new(&volume, &bare.0, &bare.1), walk, Regular, Heuristic::Balance);
         let heuristic = Heuristic::Balance;
-        let weigh =
-            Weigh { world, camera: &camera, emitters: &emitters, thickness: Exact, heuristic, light_paths: 1.0 };
+        let weigh = Weigh {
+            world,
+            camera: &camera,
+            emitters: &emitters,
+            thickness: Exact,
+            heuristic,
+            light_paths: 1.0,
+        };
         let walking = Walking { point_caustics, ..Walking::new(walk) };
         let mut integrator = Bidirectional::new(weigh, walking, Regular);
         let mut light = Subpath::empty();

@@ -1,4 +1,5 @@
-//! Weights of every path that any strategy finds: each is the one by all densities, and together they are one. A mistake that no mean shows, shows here.
+//! Weights of every path that any strategy finds: each is the one by all densities, and together they are one. A mistake that no
+//! mean shows, shows here.
 
 mod common;
 
@@ -9,8 +10,10 @@ use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, Homogeneous, LineThickness};
 use fairflight_paths::Heuristic;
 use fairflight_paths::transport::Light;
+use fairflight_sources::Seeded;
 use fairflight_transmittance::Regular;
 use glam::{DVec3, dvec3};
+use std::collections::BTreeSet;
 use std::num::NonZeroU32;
 
 /// Rounding of sums of logarithms of a few hundred, relative to each weight.
@@ -118,21 +121,38 @@ fn forward_peaks_and_near_vertices() {
 }
 
 #[test]
+fn light_paths_start_with_the_density_that_weights_have() {
+    fn starts(scene: &Scene<Homogeneous>) -> usize {
+        let emitters = scene.emitters::<Regular>();
+        let weigh = scene.weigh::<Regular, _>(&emitters, Heuristic::Balance, Exact);
+        let mut source = Seeded::new(3);
+        let mut seen = BTreeSet::new();
+        for _ in 0..500 {
+            let start = emitters.sample(&scene.lights, &scene.surfaces, &mut source).unwrap();
+            let pdf = weigh.end_of(&start).pdf_start();
+            assert!((pdf / start.pdf - 1.0).abs() < 1e-12, "{start:?}: {pdf}");
+            seen.insert(format!("{:?}", start.light));
+        }
+        seen.len()
+    }
+    // A constant, a map, a direction and a point; two lamps; a lamp and a globe that glows.
+    assert_eq!([starts(&sky()), starts(&mixed()), starts(&bulb())], [4, 2, 2]);
+}
+
+#[test]
 fn surrogates_of_densities_are_lawful() {
     // Without the extinction at a collision, without survival, without transmittance: other densities, and still one.
     let scene = forward();
     let emitters = scene.emitters::<Regular>();
     let weigh = scene.weigh::<Regular, _>(&emitters, Heuristic::Balance, Neglected);
     let at = [dvec3(0.1, -0.2, 0.0), dvec3(0.4, 0.1, 0.3), dvec3(-0.3, 0.4, 0.5), dvec3(0.0, 0.2, -0.4)];
-    let change: [fn(&mut Place); 3] = [
-        |_| {},
-        |place| place.site = Site::Medium { sigma_t: 1.0 },
-        |place| place.survival = 1.0,
-    ];
+    let change: [fn(&mut Place); 3] =
+        [|_| {}, |place| place.site = Site::Medium { sigma_t: 1.0 }, |place| place.survival = 1.0];
     let weights = change.map(|change| {
         let mut places: Vec<Place> = at.map(|position| in_medium(&scene, position)).to_vec();
         places.iter_mut().for_each(change);
-        let end = LightEnd::new(&scene.world::<Regular>(), &emitters, Light::Surface(5), dvec3(0.3, 0.9, 0.1));
+        let end =
+            LightEnd::new(&scene.world::<Regular>(), &emitters, Light::Surface(5), dvec3(0.3, 0.9, 0.1));
         let weights = weigh.recursive(&Path { places, end }, right);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < EXACT);
         weights
@@ -218,6 +238,5 @@ fn rejects<M: LineThickness>(
     least: f64,
 ) {
     let found = defects(scene, (Heuristic::Balance, Exact), 300, twin);
-    println!("{name}: {} of {} paths", found.mean(), found.paths);
     assert!(found.mean() > least, "{name}: {found:?}");
 }

@@ -1,11 +1,11 @@
 //! Light paths, whose vertices are virtual point lights (engelhardt-2013 section 3.2, raab-2008 section 4.2).
 
 use crate::{KeepNear, Vpl};
-use fairflight_media::Line;
 use fairflight_paths::Walk;
-use fairflight_paths::transport::{Emitters, Event, Ledger, Types, World};
-use fairflight_scene::{Geometry, Segment, Spectrum};
+use fairflight_paths::transport::{Carried, Emitters, Ledger, Met, Types, WalkEnd, World};
+use fairflight_scene::Spectrum;
 use fairflight_sources::UniformSource;
+use std::ops::ControlFlow;
 
 /// Light paths through surfaces and medium.
 ///
@@ -70,65 +70,40 @@ impl<'s, W: Types> LightPaths<'s, W> {
         let world = &self.world;
         ledger.paths += 1;
         let Some(start) = self.emitters.sample(world.lights, world.surfaces, source) else { return };
-        let collisions = world.collisions(&self.walk);
-        let mut power = start.power * share;
-        let mut segment = start.segment;
-        let mut bounce = 0;
+        let power = start.power * share;
         ledger.emitted += power;
-        for _ in 0..self.max_vertices {
-            let hit = world.surfaces.intersect(&segment);
-            segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
-            let incident = segment.line.direction;
-            let (vertex, factor) = match world.follow(&self.walk, &collisions, &segment, source) {
-                Event::Scattered { vertex, energy } => {
-                    ledger.absorbed += share_absorbed(power * energy, world.volume.albedo);
-                    (vertex, energy)
+        let mut bounce = 0;
+        let walk = (&self.walk, self.max_vertices);
+        let begin = (start.segment, power);
+        let end = world.random_walk(walk, begin, Carried::Power, source, |met, incident, power, source| {
+            let (vertex, factor, hit) = match met {
+                Met::Vertex { vertex, factor, hit } => (vertex, factor, hit),
+                Met::Smooth { .. } if bounce == 0 && !start.light.has_extent() => {
+                    ledger.unseen += power;
+                    return ControlFlow::Break(());
                 }
-                Event::Passed { weight } => {
-                    power = power * weight;
-                    let Some(hit) = hit else {
-                        ledger.escaped += power;
-                        return;
-                    };
-                    if let Some(passage) = world.pass(&hit, incident, source) {
-                        if bounce == 0 && !start.light.has_extent() {
-                            ledger.unseen += power;
-                            return;
-                        }
-                        let line = Line { origin: hit.position, direction: passage.direction };
-                        segment = Segment { line, length: f64::INFINITY, from: Some(hit.index), to: None };
-                        continue;
-                    }
-                    let (vertex, reflectance) =
-                        world.diffuse_vertex(&hit).expect("what is not smooth is diffuse");
-                    ledger.absorbed += power * (W::Spectrum::splat(1.0) + reflectance * -1.0);
-                    (vertex, reflectance)
-                }
-                Event::Absorbed => return,
-                Event::Truncated => {
-                    ledger.truncated += 1;
-                    return;
-                }
+                Met::Smooth { .. } => return ControlFlow::Continue(()),
+            };
+            let scattered = power * factor;
+            ledger.absorbed += match hit {
+                None => share_absorbed(scattered, world.volume.albedo),
+                Some(_) => power * (W::Spectrum::splat(1.0) + factor * -1.0),
             };
             bounce += 1;
-            let scattered = power * factor;
             ledger.scattered += scattered;
-            let survival = factor.magnitude().min(1.0);
-            if survival == 0.0 {
-                return;
+            if factor.magnitude() > 0.0 {
+                let kept = self.keep_near.map_or(1.0, |near| near.probability(vertex.position));
+                if kept >= 1.0 || source.next_uniform() < kept {
+                    deposit(Vpl { vertex, incident, power: scattered * (1.0 / kept), bounce });
+                }
             }
-            let kept = self.keep_near.map_or(1.0, |near| near.probability(vertex.position));
-            if kept >= 1.0 || source.next_uniform() < kept {
-                deposit(Vpl { vertex, incident, power: scattered * (1.0 / kept), bounce });
-            }
-            if source.next_uniform() >= survival {
-                return;
-            }
-            power = scattered * (1.0 / survival);
-            let (u, v) = (source.next_uniform(), source.next_uniform());
-            segment = vertex.leave(vertex.sample(&world.volume.phase, u, v), f64::INFINITY);
+            ControlFlow::Continue(())
+        });
+        match end {
+            WalkEnd::Escaped(_, power) => ledger.escaped += power,
+            WalkEnd::Ended => {}
+            WalkEnd::Cut => ledger.truncated += 1,
         }
-        ledger.truncated += 1;
     }
 }
 

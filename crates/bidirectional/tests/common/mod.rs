@@ -119,7 +119,12 @@ fn camera() -> Camera {
     Camera::new(origin, dvec3(0.0, -0.2, 0.0), DVec3::Y, 75.0, [1, 1]).unwrap()
 }
 
-fn scene<M>(medium: M, (g, albedo): (f64, f64), surfaces: Vec<Surface<f64>>, lights: Lights<f64>) -> Scene<M> {
+fn scene<M>(
+    medium: M,
+    (g, albedo): (f64, f64),
+    surfaces: Vec<Surface<f64>>,
+    lights: Lights<f64>,
+) -> Scene<M> {
     // Up to below the point lights: a path tracer has no second moment of one in a medium.
     let bounds = Bounds::aligned_box(DVec3::splat(-1.2), dvec3(1.2, 0.3, 1.2)).unwrap();
     let phase = HenyeyGreenstein::new(g).unwrap();
@@ -186,7 +191,7 @@ pub fn bulb() -> Scene<Homogeneous> {
     let mut surfaces = room(0.7);
     surfaces.push(ball(dvec3(0.0, 0.4, 0.0), 0.35, Material::Dielectric { ior: 1.5 }, 0.0));
     surfaces.push(ball(dvec3(0.0, 0.4, 0.0), 0.2, diffuse(0.0), 4.0));
-    surfaces.push(ball(dvec3(-0.5, -0.6, 0.1), 0.3, Material::Dielectric { ior: 1.3 }, 1.0));
+    surfaces.push(ball(dvec3(-0.5, -0.6, 0.1), 0.3, Material::Dielectric { ior: 1.3 }, 0.15));
     scene(Homogeneous::new(0.3).unwrap(), (0.3, 0.9), surfaces, sources(vec![]))
 }
 

@@ -58,9 +58,7 @@ impl<W: Types> World<'_, W> {
             let visibility = self.attenuated_visibility(segment, shadow, source);
             radiance += match pdf_solid_angle {
                 None => arriving * (scattered * visibility),
-                Some(pdf) => {
-                    arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility)
-                }
+                Some(pdf) => arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility),
             };
         });
         radiance

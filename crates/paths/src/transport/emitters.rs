@@ -80,12 +80,12 @@ impl<C: Spectrum> Emitters<C> {
         let constant = (lights.background.constant != C::ZERO).then_some(Light::Constant);
         let maps = (0..lights.background.maps.len()).map(Light::Map);
         let sources = (0..lights.sources.len()).map(Light::Source);
-        let of_lights =
-            constant.into_iter().chain(maps).chain(sources).enumerate().map(|(index, light)| Emitter {
-                light,
-                sides: Sides::Outer,
-                power: lights.power(index, ball.1),
-            });
+        let of_lights = constant
+            .into_iter()
+            .chain(maps)
+            .chain(sources)
+            .enumerate()
+            .map(|(index, light)| Emitter { light, sides: Sides::Outer, power: lights.power(index, ball.1) });
         let of_surfaces = geometry.emitters().iter().map(|&index| {
             let surface = &geometry.surfaces()[index];
             let sides = Sides::seen(surface, observer);
@@ -181,8 +181,8 @@ impl Sides {
         if closed && !surface.shape.encloses(observer) { Self::Outer } else { Self::Both }
     }
 
-    /// The density of the direction in which a light path leaves its start, per projected solid angle; `cosine` is that of the angle to the outer normal
-    /// \[1/sr\].
+    /// The density of the direction in which a light path leaves its start, per projected solid angle; `cosine` is that of the
+    /// angle to the outer normal \[1/sr\].
     #[must_use]
     pub fn pdf_projected(self, cosine: f64) -> f64 {
         match self {
@@ -195,8 +195,8 @@ impl Sides {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use super::super::fixtures::{Scene, ball, diffuse, square, vacuum};
+    use super::*;
     use fairflight_media::EmptySpace;
     use fairflight_scene::{Background, EnvironmentMap, Material, NoSurfaces, Source};
     use fairflight_sources::Scripted;
