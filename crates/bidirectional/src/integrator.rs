@@ -102,7 +102,7 @@ pub struct Strategy {
     pub eye: u32,
 }
 
-/// What one strategy found.
+/// Contribution of one strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found<C> {
     /// The strategy.

@@ -67,7 +67,7 @@ impl<'s> LightEnd<'s> {
         self.light
     }
 
-    /// Where it is; `None` if infinitely far.
+    /// Position; `None` if infinitely far.
     #[inline]
     pub(crate) fn position(&self) -> Option<DVec3> {
         match self.kind {

@@ -6,24 +6,24 @@ use fairflight_paths::transport::{Lobe, Vertex};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// How a vertex scatters, as far as densities ask.
+/// Scattering at a vertex, as far as densities ask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Site {
-    /// By the phase function.
+    /// Scattering by the phase function of the medium.
     Medium {
         /// The extinction at the vertex \[1/length\].
         sigma_t: f64,
     },
     /// Lambert.
     Diffuse {
-        /// Of unit length, on the side of the path.
+        /// Normal of unit length, on the side of the path.
         normal: DVec3,
         /// The surface.
         surface: usize,
     },
     /// Reflection or refraction into one direction.
     Smooth {
-        /// Of unit length, on either side.
+        /// Normal of unit length, on either side.
         normal: DVec3,
         /// The surface.
         surface: usize,
@@ -39,16 +39,16 @@ pub enum Site {
 /// number is lawful in a weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Where.
+    /// Point in space.
     pub position: DVec3,
-    /// How it scatters.
+    /// Scattering there.
     pub site: Site,
     /// q: the probability to go on, min(1, greatest channel of reflectance or albedo).
     pub survival: f64,
 }
 
 impl Place {
-    /// Whether a strategy may connect here: its direction is not bound to one.
+    /// Returns true if a strategy may connect here: the direction is not bound to one.
     #[inline]
     #[must_use]
     pub fn is_connectable(&self) -> bool {

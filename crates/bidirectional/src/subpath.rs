@@ -14,9 +14,9 @@ use std::ops::ControlFlow;
 pub struct Step<C> {
     /// The vertex and its densities.
     pub node: Node,
-    /// What arrives: throughput from the camera, or power from a light.
+    /// Energy that arrives: throughput from the camera, or power from a light.
     pub arriving: C,
-    /// What is scattered: that times reflectance, or the energy behind the collision; 0 on a smooth surface, where nothing is connected.
+    /// Energy that is scattered: that times reflectance, or the energy behind the collision; 0 on a smooth surface, where nothing is connected.
     pub scattered: C,
 }
 
@@ -35,7 +35,7 @@ pub struct Subpath<C> {
     pub start: Option<Start<C>>,
     /// The power of a light without extent that went straight into a smooth surface and was not followed: no other integrator sees it.
     pub unseen: Option<C>,
-    /// Whether the walk was cut: a bias.
+    /// True if the walk was cut: a bias.
     pub is_cut: bool,
 }
 
@@ -58,14 +58,14 @@ impl<C> Default for Subpath<C> {
     }
 }
 
-/// How walks of subpaths go.
+/// Rules of the walks of subpaths.
 #[derive(Clone, Copy, Debug)]
 pub struct Walking<R> {
     /// Flights through the medium.
     pub walk: Walk<R>,
     /// Vertices of a subpath behind its first one; longer ones are cut, a bias.
     pub max_vertices: u32,
-    /// Whether light of a point or a direction is followed straight into smooth surfaces: the path tracer does not see it, since no
+    /// True if light of a point or a direction is followed straight into smooth surfaces: the path tracer does not see it, since no
     /// direction meets the light by chance and no connection passes the surface.
     pub point_caustics: bool,
 }

@@ -50,7 +50,7 @@ impl<M> WeightThickness<M> for Neglected {
     }
 }
 
-/// Between two points: the ends in lexicographic order first, so that both directions evaluate the same numbers.
+/// Optical thickness between two points: the ends in lexicographic order first, so that both directions evaluate the same numbers.
 #[inline]
 pub(crate) fn between<M: Medium, P: PhaseFunction, C: Spectrum>(
     volume: &Volume<M, P, C>,
@@ -68,7 +68,7 @@ pub(crate) fn between<M: Medium, P: PhaseFunction, C: Spectrum>(
     volume.enter(&line, Some(length)).map_or(0.0, |ray| rule.thickness(&ray))
 }
 
-/// From a point to the end of the medium.
+/// Optical thickness from a point to the end of the medium.
 #[inline]
 pub(crate) fn beyond<M: Medium, P: PhaseFunction, C: Spectrum>(
     volume: &Volume<M, P, C>,

@@ -34,11 +34,11 @@ pub struct Weigh<'s, W: Types, K> {
     pub world: World<'s, W>,
     /// The camera.
     pub camera: &'s Camera,
-    /// Where light paths start.
+    /// Emitters, on which light paths start.
     pub emitters: &'s Emitters<W::Spectrum>,
     /// Optical thickness of edges in densities.
     pub thickness: K,
-    /// How weights follow from densities.
+    /// Rule by which weights follow from densities.
     pub heuristic: Heuristic,
     /// n_L > 0: light paths of the whole image for one sample of each pixel.
     pub light_paths: f64,

@@ -22,7 +22,7 @@ pub struct EmitterSample<C> {
     pub light: Light,
     /// From the vertex to that point; endless for a direction.
     pub segment: Segment,
-    /// What arrives along the segment if nothing takes of it: radiance, or irradiance of a light without extent.
+    /// Light that arrives along the segment if nothing takes of it: radiance, or irradiance of a light without extent.
     pub arriving: C,
     /// The density of the direction \[1/sr\]; none for a light without extent.
     pub pdf_solid_angle: Option<f64>,

@@ -36,7 +36,7 @@ pub enum Light {
 }
 
 impl Light {
-    /// Whether a direction may meet the emitter by chance; not one of a point or of a direction.
+    /// Returns true if a direction may meet the emitter by chance; not one of a point or of a direction.
     #[must_use]
     pub fn has_extent(self) -> bool {
         !matches!(self, Self::Source(_))

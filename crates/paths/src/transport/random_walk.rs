@@ -8,7 +8,7 @@ use fairflight_sources::UniformSource;
 use glam::DVec3;
 use std::ops::ControlFlow;
 
-/// What a walk carries, which says what a change of the index of refraction does to it.
+/// Quantity that a walk carries, which says what a change of the index of refraction does to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     /// Radiance, from the camera: L/n² is what stays the same along a ray.
@@ -17,14 +17,14 @@ pub enum Carried {
     Power,
 }
 
-/// Where a walk is going to be scattered, or passes.
+/// Vertex at which a walk is scattered, or smooth surface that it passes.
 #[derive(Clone, Copy, Debug)]
 pub enum Met<'h, C> {
     /// A collision, or a diffuse surface.
     Vertex {
         /// The vertex.
         vertex: Vertex,
-        /// What is scattered of what arrives: the energy behind a collision, a reflectance.
+        /// Share of what arrives that is scattered: the energy behind a collision, a reflectance.
         factor: C,
         /// The surface; none in the medium.
         hit: Option<Hit<'h, C>>,
@@ -33,12 +33,12 @@ pub enum Met<'h, C> {
     Smooth {
         /// The surface.
         hit: Hit<'h, C>,
-        /// How it goes on.
+        /// Way behind it.
         passage: Passage,
     },
 }
 
-/// How a walk ended.
+/// End of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WalkEnd<C> {
     /// It left the scene in this direction with what it carried.
