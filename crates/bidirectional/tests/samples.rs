@@ -40,7 +40,7 @@ fn sum<M: LineThickness>(
 fn a_sample_allocates_nothing() {
     for heuristic in [Heuristic::Balance, Heuristic::Maximum] {
         let (_, found) = sum(&mixed(), (heuristic, 500, 1), |run| {
-            let allocated = allocation_counter::measure(|| run());
+            let allocated = allocation_counter::measure(run);
             assert_eq!(allocated.count_total, 0);
         });
         assert!(found > 1000, "{found}");
