@@ -86,11 +86,12 @@ pub(crate) struct SchemaArguments {
 
 /// Arguments of `report`.
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = crate::report::registry::times())]
 pub(crate) struct ReportArguments {
     /// Which report
     #[arg(default_value = "standard")]
     pub name: String,
-    /// The same report in under ten seconds, with wider intervals
+    /// The same report from fewer samples, with wider intervals
     #[arg(long)]
     pub quick: bool,
     /// An OpenVDB fog volume to be reported on as well
@@ -102,6 +103,9 @@ pub(crate) struct ReportArguments {
     /// A factor in front of its values
     #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
     pub scale: f64,
+    /// A page without script: static figures only, small enough to be kept in a repository
+    #[arg(long)]
+    pub static_figures: bool,
     /// Folder to write into [default: reports/NAME in the working directory]
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
@@ -125,6 +129,7 @@ impl Default for ReportArguments {
             vdb: None,
             grid: None,
             scale: 1.0,
+            static_figures: false,
             out: None,
             seed: 1,
             budget: 1e11,

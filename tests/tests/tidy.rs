@@ -91,6 +91,12 @@ fn dependencies_point_one_way() {
 }
 
 #[test]
+fn documents_know_no_crate_of_ours() {
+    let manifest = repository().join("harness/document/Cargo.toml");
+    assert!(fairflight_dependencies(&manifest).is_empty());
+}
+
+#[test]
 fn who_depends_on_the_laws_compiles_no_scene() {
     let (mut reached, mut open) = (BTreeSet::new(), vec!["laws".to_owned()]);
     while let Some(name) = open.pop() {
@@ -118,8 +124,10 @@ fn crates_know_no_files_clocks_threads_or_terminals() {
         "eprint!",
         "dbg!",
     ];
-    for (path, text) in sources("crates") {
-        let is_library = path.components().any(|part| part.as_os_str() == "src");
+    for (path, text) in sources("crates").into_iter().chain(sources("harness/document")) {
+        // A test may ask a browser.
+        let is_test = path.ends_with("document/src/browser.rs") || path.ends_with("document/src/tests.rs");
+        let is_library = path.components().any(|part| part.as_os_str() == "src") && !is_test;
         for word in FORBIDDEN {
             let mut code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
             let is_used = code.any(|line| line.contains(word));
@@ -186,6 +194,52 @@ fn a_long_file_says_why() {
             assert!(lines <= MOST_LINES || explains, "{}: {lines} lines without a reason", path.display());
         }
     }
+}
+
+/// Product lines of the harness, its packages and the build script included: all lines of formatted Rust but modules of tests, integration tests,
+/// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised.
+const MOST_PRODUCT_LINES: usize = 30_300;
+
+#[test]
+fn the_harness_does_not_grow() {
+    let is_product = |path: &Path| {
+        let named = |name: &str| path.components().any(|part| part.as_os_str() == name);
+        !["tests", "benches", "examples"].into_iter().any(named)
+    };
+    let mut lines = 0;
+    let all = sources("harness");
+    // Files that a `#[cfg(test)] mod name;` beside them declares.
+    let tests: BTreeSet<PathBuf> = all.iter().flat_map(|(path, text)| test_files(path, text)).collect();
+    for (_, text) in all.iter().filter(|(path, _)| is_product(path) && !tests.contains(path)) {
+        let code: Vec<&str> = text.lines().collect();
+        let inline = |k: &usize| {
+            code[*k].trim() == "#[cfg(test)]"
+                && code[k + 1].trim_start().starts_with("mod ")
+                && code[k + 1].ends_with('{')
+        };
+        lines += (0..code.len().saturating_sub(1)).find(inline).unwrap_or(code.len());
+    }
+    assert!(lines <= MOST_PRODUCT_LINES, "{lines} product lines, {MOST_PRODUCT_LINES} are allowed");
+    assert!(
+        lines + 200 > MOST_PRODUCT_LINES,
+        "{lines} product lines: the limit can fall from {MOST_PRODUCT_LINES}"
+    );
+}
+
+/// Files of modules that a source declares for tests only.
+fn test_files(path: &Path, text: &str) -> Vec<PathBuf> {
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let folder = path.parent().unwrap();
+    let inside = if path.ends_with("mod.rs") || path.ends_with("lib.rs") || path.ends_with("main.rs") {
+        folder.to_owned()
+    } else {
+        path.with_extension("")
+    };
+    let declared = lines.windows(2).filter(|pair| pair[0] == "#[cfg(test)]");
+    declared
+        .filter_map(|pair| pair[1].strip_suffix(';')?.rsplit(' ').next())
+        .map(|name| inside.join(format!("{name}.rs")))
+        .collect()
 }
 
 /// Blocks of bounds: the number of the line that ends with `where`, and the lines of the block, that one included.

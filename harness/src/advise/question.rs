@@ -6,7 +6,7 @@ use crate::field::MediumSpec;
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::input::Input;
 use crate::reader::{Node, json};
-use crate::report::document::Volume;
+use crate::report::options::Volume;
 use crate::result::Provenance;
 use crate::spec::{IntegratorSpec, SceneOverrides, SceneSpec, VolumeSpec, refuse_other};
 use crate::{Environment, Failure};

@@ -3,11 +3,17 @@
 use super::TestRay;
 use crate::Failure;
 use crate::estimator::{
-    AdaptiveRatioSpec, CellsSpec, ControlSpec, DoubleParticleSpec, EstimatorSpec, JitteredRatioSpec,
-    NextFlightKind, NextFlightSpec, PSeriesSpec, Prepared, ResidualCellsSpec, RouletteSpec, TelescopingSpec,
+    AdaptiveRatioSpec, CellsSpec, ControlSpec, DoubleParticleSpec, EstimatorSpec, GeneralisedPoissonSpec,
+    HybridSpec, JackknifeSpec, JitteredRatioSpec, LineIntegralSpec, NaiveSpec, NextFlightKind,
+    NextFlightSpec, PSeriesSpec, Prepared, ProgressiveMajorantSpec, RayMarchingSpec, RegularSpec,
+    ResidualCellsSpec, RouletteSpec, SamplingSpec, SingleParticleSpec, TelescopingSpec,
     UnbiasedRayMarchingSpec, WoodcockSpec,
 };
-use fairflight_transmittance::{Choice, CombShape, Experience, Hybrid, PSeriesVersion, Roulette};
+use crate::reader::Kind;
+use fairflight_collision::{Albedo, Version};
+use fairflight_transmittance::{
+    Choice, CombShape, Experience, Hybrid, Offset, PSeriesVersion, Roulette, teeth_for,
+};
 
 /// Facts that an entrant may know beside the ray: nothing of it comes from the variates that will estimate.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +67,22 @@ impl Entrant {
                 Some(Hybrid::choose(&facts.experience, length, ray.majorant * length, budget))
             }
         }
+    }
+
+    /// The value of `kind` in its specs.
+    #[must_use]
+    pub fn kind(&self, ray: &TestRay, facts: &Facts) -> &'static str {
+        match (self.parameters)(ray, facts) {
+            Parameters::Spec(spec) => spec.name(),
+            Parameters::Hybrid { .. } => HybridSpec::NAME,
+        }
+    }
+
+    /// True if the mean of σ_t decides a parameter. On a ray alone that mean times the length is the answer.
+    #[must_use]
+    pub fn knows_the_mean(&self, ray: &TestRay, facts: &Facts) -> bool {
+        let other = Facts { mean: 0.5 * facts.mean, ..facts.clone() };
+        self.spec(ray, facts) != self.spec(ray, &other)
     }
 
     /// The estimator that it runs as on a ray, as in an experiment; for a hybrid the one that it chose.
@@ -187,7 +209,7 @@ pub fn entrants() -> Vec<Entrant> {
         ours("Bernoulli comb 3", |ray, _| by_the_rule(ray, CombShape::Bernoulli3, USUAL)),
         ours("factorised, one tooth", |ray, facts| {
             // As many segments as the rule has teeth; each has its share of the variance.
-            let segments = fairflight_transmittance::teeth_for(depth(ray));
+            let segments = teeth_for(depth(ray));
             let roulette = match facts.experience.apart_variance(ray.profile.length()) {
                 Some(k2) => RouletteSpec::Stop(Roulette::tuned(k2 / f64::from(segments)).stop_probability()),
                 None => USUAL,
@@ -203,4 +225,74 @@ pub fn entrants() -> Vec<Entrant> {
         ours("hybrid, frugal", |_, _| Parameters::Hybrid { budget: 2.0 }),
         ours("hybrid", |_, _| Parameters::Hybrid { budget: Hybrid::USUAL_BUDGET }),
     ]
+}
+
+/// Teeth of each of two combs that share those of the rule.
+fn half(ray: &TestRay) -> u32 {
+    (teeth_for(depth(ray)) / 2).max(1)
+}
+
+fn single(ray: &TestRay, version: Version) -> Parameters {
+    /// Walks that rarely end.
+    const ALBEDO: f64 = 0.9;
+    spec(SingleParticleSpec {
+        version,
+        albedo: Albedo::new(ALBEDO).unwrap_or_default(),
+        sigma_samp: SamplingSpec::Constant(ray.majorant),
+        control: ControlSpec::none(),
+    })
+}
+
+/// A progressive majorant begins with this share of the majorant.
+const GUESS: f64 = 0.1;
+/// Flights of a line integral.
+const SPLITS: u32 = 8;
+
+/// Estimators that take no part in contests: biased baselines, the closed form, and those that another is never worse than.
+#[must_use]
+pub fn others() -> Vec<Entrant> {
+    let published = |name, parameters| entrant(name, true, parameters);
+    vec![
+        published("terminating", |ray, _| single(ray, Version::Terminating)),
+        published("non-terminating", |ray, _| single(ray, Version::NonTerminating)),
+        published("adaptive", |ray, _| single(ray, Version::Adaptive)),
+        published("line integral", |ray, _| {
+            spec(LineIntegralSpec { majorant: ray.majorant, splits: SPLITS })
+        }),
+        published("generalised Poisson", |ray, _| {
+            spec(GeneralisedPoissonSpec { pivot: depth(ray), rate: depth(ray) })
+        }),
+        published("regular", |_, _| spec(RegularSpec {})),
+        published("ray marching (biased)", |ray, _| spec(RayMarchingSpec::at(as_many(ray), Offset::Fixed))),
+        published("jackknife (biased)", |ray, _| spec(JackknifeSpec { teeth: half(ray) })),
+        published("naive (biased)", |ray, _| spec(NaiveSpec { teeth: half(ray) })),
+        published("progressive majorant (biased)", |ray, _| {
+            spec(ProgressiveMajorantSpec { start: GUESS * ray.majorant })
+        }),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::AnyProfile;
+    use crate::reference::Truth;
+    use fairflight_media::{Constant, Tolerance};
+
+    #[test]
+    fn every_kind_is_an_entrant_or_among_the_others() {
+        let profile = AnyProfile::Constant(Constant::new(0.5, 4.0).unwrap());
+        let truth = Truth::of(&profile, Tolerance::TIGHT).unwrap();
+        let ray = TestRay { profile, truth, majorant: 1.0 };
+        let all: Vec<Entrant> = entrants().into_iter().chain(others()).collect();
+        let kinds: Vec<&str> = all.iter().map(|entrant| entrant.kind(&ray, &Facts::default())).collect();
+        let missing: Vec<_> = EstimatorSpec::NAMES.iter().filter(|name| !kinds.contains(name)).collect();
+        assert!(missing.is_empty(), "not in reports: {missing:?}");
+        for entrant in all {
+            assert_eq!(
+                entrant.knows_the_mean(&ray, &Facts { mean: 0.5, ..Facts::default() }),
+                entrant.name == "residual ratio, global mean"
+            );
+        }
+    }
 }

@@ -1,17 +1,14 @@
-//! `harness report`: measure, then write.
+//! `harness report`: measure, make files, put them in place.
 
-use super::document::{self, Volume};
-use super::registry::{REPORTS, ReportKind, Study, find};
-use super::result::Report;
+use super::folder::{Prepared, RESULTS};
+use super::options::Options;
+use super::registry::{REPORTS, ReportKind, find};
 use super::run::Run;
-use super::stability::stability;
-use super::study::{Options, standard};
-use super::write::{self, Files};
-use crate::budget::Budget;
 use crate::cli::ReportArguments;
 use crate::{DONE, Environment, Failure, UNSOUND, interrupt};
+use fairflight_document::{File, Script, files};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 pub(crate) fn run(
     arguments: &ReportArguments,
@@ -42,80 +39,32 @@ fn report(
         // A person who does not see this finds it in the working directory.
         let _ = writeln!(stderr, "the report {} goes to {}", kind.name, place.display());
     }
-    let (seconds, sound) = match kind.study {
-        Study::Standard => {
-            let report = measured_and_written(&folder, arguments, environment, || {
-                standard_report(arguments, environment)
-            })?;
-            (report.seconds, is_sound(&report))
-        }
-        Study::Document(study) => {
-            let document = measured_and_written(&folder, arguments, environment, || {
-                let options = document::Options {
-                    quick: arguments.quick,
-                    seed: arguments.seed,
-                    threads: rayon::current_num_threads(),
-                    vdb: volume(arguments),
-                    budget: Budget::of(arguments.budget),
-                };
-                study(&Run::new(kind.name, &options, environment))
-            })?;
-            (document.seconds, document.unsound.is_empty())
-        }
-    };
+    // Found out before a minute of measurement, not after it.
+    let prepared = Prepared::new(&folder)?;
+    let finished = environment.on_threads(arguments.threads, || {
+        let options = Options::of(arguments);
+        (kind.study)(&Run::new(kind.name, &options, environment))
+    })?;
+    interrupt::check()?;
+    let script = if arguments.static_figures { Script::None } else { Script::Embedded };
+    let document = &finished.document;
+    let made = environment.on_threads(arguments.threads, || {
+        files(document, script).map_err(|reason| Failure::not_written(&folder, reason))
+    });
+    let mut written = made?;
+    written.push(File { name: RESULTS.to_owned(), bytes: finished.results });
+    prepared.commit(&written)?;
     if !environment.is_quiet() {
         // A person who does not see this has the report all the same.
-        let _ = writeln!(stderr, "{}: written in {seconds:.1} s", folder.join("index.html").display());
+        let (page, seconds) = (folder.join("index.html"), document.seconds);
+        let _ = writeln!(stderr, "{}: written in {seconds:.1} s", page.display());
     }
-    Ok(if sound { DONE } else { UNSOUND })
-}
-
-fn measured_and_written<R: Files + Send + Sync>(
-    folder: &Path,
-    arguments: &ReportArguments,
-    environment: &Environment,
-    measure: impl FnOnce() -> Result<R, Failure> + Send,
-) -> Result<R, Failure> {
-    // Found out before a minute of measurement, not after it.
-    let prepared = write::prepare(folder)?;
-    let report = environment.on_threads(arguments.threads, measure)?;
-    interrupt::check()?;
-    environment.on_threads(arguments.threads, || prepared.commit(&report))?;
-    Ok(report)
-}
-
-fn volume(arguments: &ReportArguments) -> Option<Volume> {
-    let file = arguments.vdb.clone()?;
-    Some(Volume { file, grid: arguments.grid.clone(), scale: arguments.scale })
-}
-
-fn standard_report(arguments: &ReportArguments, environment: &Environment) -> Result<Report, Failure> {
-    let options = Options {
-        quick: arguments.quick,
-        seed: arguments.seed,
-        vdb: volume(arguments),
-        threads: rayon::current_num_threads(),
-    };
-    let mut report = standard(&options, environment)?;
-    report.stability = stability(arguments.seed);
-    Ok(report)
-}
-
-/// Whether the unbiased estimators agree with their closed forms, and the hard cases are right.
-fn is_sound(report: &Report) -> bool {
-    let unsound = report.media.iter().flat_map(|medium| &medium.sweeps).any(|curve| {
-        !curve.series.is_baseline()
-            && curve
-                .points
-                .iter()
-                .any(|point| point.measured.as_ref().is_some_and(|measured| measured.sound == Some(false)))
-    });
-    !unsound && report.stability.iter().all(|row| row.passes)
+    Ok(if document.unsound.is_empty() { DONE } else { UNSOUND })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::write::fixture_document;
+    use super::super::run::Finished;
     use super::*;
     use crate::{Host, REFUSED};
 
@@ -123,14 +72,15 @@ mod tests {
         name: "made-up",
         about: "",
         takes_volume: false,
-        study: Study::Document(|run| {
-            let mut document = fixture_document();
+        seconds: [1, 1],
+        study: |run| {
+            let mut document = run.document("Made up");
             // The seed decides, so that both ends can be seen.
             if run.options.seed == 2 {
                 document.unsound.push("made up".to_owned());
             }
-            Ok(document)
-        }),
+            Finished::of(document)
+        },
     };
 
     fn code(arguments: &ReportArguments) -> i32 {

@@ -1,6 +1,6 @@
 //! A measured number with its 95 % interval.
 
-use super::document::{Cell, Mark};
+use fairflight_document::{Cell, Mark};
 use fairflight_stats::{Moments, student_two_sided_quantile};
 
 /// The probability that an interval misses.

@@ -1,18 +1,18 @@
-//! Reports: what they say, how they are measured, how they are written.
+//! Reports: named studies that are measured, made into documents, and written as folders.
 
 pub(crate) mod command;
-pub mod document;
 mod estimators;
+mod folder;
 mod free_flight;
+mod looks;
 mod measured;
+pub(crate) mod options;
 mod particle_tracing;
 pub(crate) mod registry;
 mod replicas;
-pub mod result;
 mod run;
 mod single_scattering;
 mod speed;
 mod stability;
-pub mod study;
+mod standard;
 mod virtual_lights;
-pub mod write;

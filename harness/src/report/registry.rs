@@ -1,29 +1,21 @@
 //! The reports that there are, by name.
 
-use super::document::Document;
-use super::run::Run;
-use super::{estimators, free_flight, particle_tracing, single_scattering, virtual_lights};
+use super::run::{Finished, Run};
+use super::{estimators, free_flight, particle_tracing, single_scattering, standard, virtual_lights};
 use crate::Failure;
 
 /// A report that can be asked for.
 pub(crate) struct ReportKind {
     /// Its name on the command line, and of its folder.
     pub(crate) name: &'static str,
-    /// What it is about, for `harness list`.
+    /// Subject, for `harness list`.
     pub(crate) about: &'static str,
     /// Whether it takes a volume.
     pub(crate) takes_volume: bool,
-    /// How it is measured.
-    pub(crate) study: Study,
-}
-
-/// How a report is measured.
-#[derive(Clone, Copy)]
-pub(crate) enum Study {
-    /// The standard report, which has a structure of its own and takes a volume.
-    Standard,
-    /// A document, measured on the threads of the current pool.
-    Document(fn(&Run<'_>) -> Result<Document, Failure>),
+    /// Seconds on two quiet cores, full and quick, as measured.
+    pub(crate) seconds: [u32; 2],
+    /// Measures it, on the threads of the current pool.
+    pub(crate) study: fn(&Run<'_>) -> Result<Finished, Failure>,
 }
 
 /// All reports; the first is the default.
@@ -32,39 +24,62 @@ pub(crate) const REPORTS: [ReportKind; 6] = [
         name: "standard",
         about: "transmittance estimators against their closed forms",
         takes_volume: true,
-        study: Study::Standard,
+        seconds: [30, 10],
+        study: standard::study,
     },
     ReportKind {
         name: "particle-tracing",
         about: "multiple scattering over the sampling extinction: three versions, noise, growth, speed",
         takes_volume: false,
-        study: Study::Document(particle_tracing::document),
+        seconds: [180, 12],
+        study: |run| Finished::of(particle_tracing::document(run)?),
     },
     ReportKind {
         name: "single-scattering",
         about: "a point light in a medium: all methods at equal look-ups, speed against error",
         takes_volume: false,
-        study: Study::Document(single_scattering::document),
+        seconds: [83, 6],
+        study: |run| Finished::of(single_scattering::document(run)?),
     },
     ReportKind {
         name: "free-flight",
         about: "distance samplers by their law, algorithm 2 from homogeneous to inhomogeneous, two wavelengths",
         takes_volume: false,
-        study: Study::Document(free_flight::document),
+        seconds: [108, 12],
+        study: |run| Finished::of(free_flight::document(run)?),
     },
     ReportKind {
         name: "vpl",
         about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
         takes_volume: false,
-        study: Study::Document(virtual_lights::document),
+        seconds: [1200, 40],
+        study: |run| Finished::of(virtual_lights::document(run)?),
     },
     ReportKind {
         name: "estimators",
         about: "all estimators of transmittance: the canonical plane, random rays, speed against error, which to use",
         takes_volume: true,
-        study: Study::Document(estimators::document),
+        seconds: [400, 70],
+        study: |run| Finished::of(estimators::document(run)?),
     },
 ];
+
+/// The reports with their times, for `harness report --help`.
+pub(crate) fn times() -> String {
+    let time = |seconds: u32| match seconds {
+        0..120 => format!("{seconds} s"),
+        _ => format!("{} min", (f64::from(seconds) / 60.0).round()),
+    };
+    let line = |kind: &ReportKind| {
+        let [full, quick] = kind.seconds.map(time);
+        format!("  {:<18} {full:>7} {quick:>11}   {}\n", kind.name, kind.about)
+    };
+    let lines: String = REPORTS.iter().map(line).collect();
+    format!(
+        "Reports, and how long they take on two quiet cores:\n\n  {:<18} {:>7} {:>11}\n{lines}",
+        "", "full", "with --quick"
+    )
+}
 
 /// The report of this name.
 pub(crate) fn find(name: &str) -> Result<&'static ReportKind, Failure> {

@@ -1,12 +1,12 @@
 //! A scene rendered several times over: images with the mean squared error that they have, and an interval of it.
 
-use super::document::{self, Pixels};
 use super::measured::{Measured, mean_and_error};
 use crate::Failure;
 use crate::field::MediumLibrary;
 use crate::plan::{ScenePlan, Spectra};
 use crate::render::{Moments, moments};
 use crate::spec::{SceneOverrides, SceneSpec};
+use fairflight_document::{self as document, Pixels};
 use fairflight_scene::EnvironmentMap;
 use fairflight_sources::named_seed;
 use serde_json::Value;

@@ -1,9 +1,11 @@
 //! The context of a report that is being measured: options, media, seeds, progress.
 
-use super::document::{Document, Options, Section};
-use crate::Environment;
+use super::looks::looks;
+use super::options::Options;
 use crate::field::MediumLibrary;
 use crate::progress::Progress;
+use crate::{Environment, Failure};
+use fairflight_document::{Document, Provenance, Section};
 use fairflight_sources::named_seed;
 use std::fmt::Display;
 use std::time::Instant;
@@ -16,6 +18,25 @@ pub(crate) struct Run<'a> {
     environment: &'a Environment,
     progress: Progress,
     clock: Instant,
+}
+
+/// A report that was measured.
+pub(crate) struct Finished {
+    pub(crate) document: Document,
+    /// The file `results.json`: all that was measured.
+    pub(crate) results: Vec<u8>,
+}
+
+impl Finished {
+    /// A report whose document holds all that was measured.
+    ///
+    /// # Errors
+    /// If it cannot be written as JSON.
+    pub(crate) fn of(document: Document) -> Result<Self, Failure> {
+        let results = fairflight_document::json(&document)
+            .map_err(|error| Failure::refused(format!("report {}: {error}", document.name)))?;
+        Ok(Self { document, results })
+    }
 }
 
 /// A part of a report.
@@ -67,17 +88,14 @@ impl<'a> Run<'a> {
     /// The document of this run, which ends here, without contents.
     pub(super) fn document(&self, title: &str) -> Document {
         self.progress.finish();
+        let provenance = self.environment.provenance(self.options.seed);
+        let crate::result::Provenance { seed, revision, command, .. } = provenance;
         Document {
-            provenance: self.environment.provenance(self.options.seed),
-            name: self.name.to_owned(),
-            title: title.to_owned(),
-            summary: Vec::new(),
             quick: self.options.quick,
             seconds: self.clock.elapsed().as_secs_f64(),
             threads: self.options.threads,
-            unsound: Vec::new(),
-            claims: Vec::new(),
-            sections: Vec::new(),
+            looks: looks(),
+            ..Document::new(self.name, title, Provenance { seed, revision, command })
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Speed against error of several integrators on one scene.
 
-use super::document::{Axis, Cell, Chart, Curve, Section, Table};
 use super::measured::Measured;
 use super::replicas::Subject;
 use super::run::Run;
 use crate::Failure;
+use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table};
 use serde_json::Value;
 
 /// Independent images per measurement.
@@ -64,21 +64,17 @@ pub(super) fn compare(
         by_lookups.push(Curve::joined(name, lookups));
         by_seconds.push(Curve::joined(name, seconds));
     }
-    let section = Section {
-        text: vec![text.to_owned()],
-        charts: vec![
-            chart("speed-lookups", "Error against look-ups", "look-ups per pixel [1]", by_lookups),
-            chart("speed-seconds", "Error against time", "CPU seconds of an image [s]", by_seconds),
-        ],
-        tables: vec![table(&efficiencies)],
-        ..Section::new("speed", "Speed against error")
-    };
+    let section = Section::new("speed", "Speed against error")
+        .with(text.to_owned())
+        .with(chart("speed-lookups", "Error against look-ups", "look-ups per pixel [1]", by_lookups))
+        .with(chart("speed-seconds", "Error against time", "CPU seconds of an image [s]", by_seconds))
+        .with(table(&efficiencies));
     Ok(Speed { section, efficiencies })
 }
 
 fn chart(id: &str, title: &str, x: &str, curves: Vec<Curve>) -> Chart {
     let (x, y) = (Axis::logarithmic(x), Axis::logarithmic("RMSE [radiance]"));
-    Chart { curves, ..Chart::new(id, title, x, y) }
+    Chart::new(id, title, x, y).with_curves(curves)
 }
 
 fn table(efficiencies: &[Efficiency]) -> Table {

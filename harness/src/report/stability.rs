@@ -1,6 +1,6 @@
 //! The stability table: the hard cases, run.
 
-use super::result::StabilityRow;
+use super::standard::StabilityRow;
 use crate::parallel::in_parallel;
 use fairflight_catalogue::{HardCase, hard_cases};
 use fairflight_laws::Run;

@@ -1,8 +1,8 @@
 //! Grids of majorants and minorants: what they cost to build and to walk, and what they save.
 
 use crate::Failure;
-use crate::report::document::{Cell, Section, Table};
 use crate::report::run::Run;
+use fairflight_document::{Cell, Section, Table};
 use fairflight_media::{
     AnalyticCosine, BoundCell, BoundGrid, Bounds, BoxBounds, Extinction, InCells, Lattice, Line, Majorant,
     Medium, MediumBreakpoints, Ray, RayQuadrature, Tolerance, Voxels,
@@ -130,11 +130,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
             ("gain", "1", &|row| Cell::Number(row.jittered[1].exp())),
         ],
     );
-    Ok(Section {
-        text: vec![text.to_owned()],
-        tables: vec![table],
-        ..Section::new("cells", "Majorants and minorants in cells")
-    })
+    Ok(Section::new("cells", "Majorants and minorants in cells").with(text.to_owned()).with(table))
 }
 
 /// A row for each number of boxes a side.

@@ -12,9 +12,9 @@ use crate::experiment::draw;
 use crate::field::AnyProfile;
 use crate::parallel::try_in_parallel;
 use crate::reference::Truth;
-use crate::report::document::{Axis, Chart, Curve, Section};
 use crate::report::measured::{Measured, mean_and_error};
 use crate::report::run::Run;
+use fairflight_document::{Axis, Chart, Curve, Section};
 use fairflight_media::Tolerance;
 use fairflight_sources::{Seeded, named_seed};
 use fairflight_transmittance::{CombShape, Hybrid};
@@ -45,8 +45,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     );
     let smooth = charts(run, ("smooth", "the seed ray", &smooth))?;
     let rough = charts(run, ("rough", "a rough ray", &rough))?;
-    let charts = smooth.into_iter().chain(rough).collect();
-    Ok(Section { text: vec![text], charts, ..Section::new("convergence", "Error against cost") })
+    Ok(Section::new("convergence", "Error against cost").with(text).with_all(smooth).with_all(rough))
 }
 
 fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, Prepared)>, Failure> {
@@ -105,14 +104,14 @@ fn charts(run: &Run<'_>, (id, name, ray): (&str, &str, &TestRay)) -> Result<[Cha
         by_lookups.push(Curve::joined(label, lookups));
         by_seconds.push(Curve::joined(label, seconds));
     }
-    let chart = |by: &str, unit: &str, curves| Chart {
-        curves,
-        ..Chart::new(
+    let chart = |by: &str, unit: &str, curves| {
+        Chart::new(
             &format!("convergence-{id}-{by}"),
             &format!("Error against {by}: {name}"),
             Axis::logarithmic(&format!("{by} [{unit}]")),
             Axis::logarithmic("RMSE / T [1]").within(1e-7, 1e2),
         )
+        .with_curves(curves)
     };
     Ok([chart("look-ups", "1", by_lookups), chart("seconds", "s", by_seconds)])
 }

@@ -4,7 +4,7 @@ use super::plane::Plane;
 use super::rays::{Standing, Standings};
 use super::seed_ray::SeedRay;
 use crate::comparison::Gain;
-use crate::report::result::{Claim, ClaimVerdict};
+use fairflight_document::{Claim, ClaimVerdict, short};
 
 /// The goal for the worst ray of every set, and for the geometric mean on smooth ones.
 const WORST: f64 = 2.4;
@@ -102,13 +102,4 @@ pub(super) fn goals(standings: &[Standings]) -> Vec<Claim> {
 fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Three digits.
-fn short(value: f64) -> String {
-    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
-        format!("{value:.2e}")
-    } else {
-        format!("{value:.3}")
-    }
 }

@@ -3,8 +3,8 @@
 use crate::Failure;
 use crate::field::AnyProfile;
 use crate::parallel::in_parallel;
-use crate::report::document::{Cell, Section, Table};
 use crate::report::run::{Part, Run};
+use fairflight_document::{Cell, Section, Table};
 use fairflight_freeflight::{FreeFlight, JitteredFlight, Woodcock};
 use fairflight_media::{AnalyticCosine, Bounded, Constant, Counted, Extinction, OpticalThickness, Ray};
 use fairflight_sources::Seeded;
@@ -79,11 +79,8 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Part, Failure
             ("look-ups", "1", &|(_, sampled, ..)| Cell::Number(sampled.lookups)),
         ],
     );
-    let section = Section {
-        text: vec![text.to_owned()],
-        tables: vec![table],
-        ..Section::new("flights", "The companion: jittered free flight")
-    };
+    let section =
+        Section::new("flights", "The companion: jittered free flight").with(text.to_owned()).with(table);
     Ok(Part { section, unsound })
 }
 

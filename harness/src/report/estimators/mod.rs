@@ -12,8 +12,8 @@ mod spectral;
 mod variates;
 
 use crate::Failure;
-use crate::report::document::Document;
 use crate::report::run::Run;
+use fairflight_document::Document;
 
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
@@ -47,5 +47,12 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     sections.extend(standings.into_iter().map(|standings| standings.section));
     sections.extend([convergence, cells, flights.section, variates.section, spectral.section]);
     let title = "Estimators of transmittance: the whole family, and which to use";
-    Ok(Document { summary, claims, unsound, sections, ..run.document(title) })
+    Ok(Document {
+        summary,
+        claims,
+        unsound,
+        sections,
+        hero: Some("plane-winners".to_owned()),
+        ..run.document(title)
+    })
 }

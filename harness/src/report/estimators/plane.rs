@@ -5,8 +5,8 @@ use crate::comparison::{Bout, Effort, Entrant, Facts, TestRay, entrants, facts_o
 use crate::field::{ExpressionSpec, ProfileKind};
 use crate::parallel::try_in_parallel;
 use crate::reference::Truth;
-use crate::report::document::{Axis, Cell, Content, HeatMap, Numbers, Panel, Section, Table};
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Content, Grid, HeatMap, Numbers, Section, Table};
 use fairflight_media::Tolerance;
 use fairflight_sources::named_seed;
 
@@ -37,12 +37,12 @@ pub(super) struct Plane {
     pub(super) unsound: Vec<String>,
 }
 
-struct Grid {
+struct Centres {
     transmittances: Vec<f64>,
     tightnesses: Vec<f64>,
 }
 
-impl Grid {
+impl Centres {
     /// Transmittances are even in −ln T towards both ends, tightnesses in their logarithm.
     fn of(run: &Run<'_>) -> Self {
         let (columns, rows) = run.quick_or((6, 4), (16, 10));
@@ -68,7 +68,7 @@ fn players() -> Vec<Entrant> {
 }
 
 pub(super) fn steps(run: &Run<'_>) -> u64 {
-    (SHAPES.len() * players().len() * Grid::of(run).points()) as u64
+    (SHAPES.len() * players().len() * Centres::of(run).points()) as u64
 }
 
 /// A point of the plane.
@@ -83,7 +83,7 @@ fn point(shape: &Shape, transmittance: f64, tightness: f64) -> Result<TestRay, F
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Plane, Failure> {
-    let grid = Grid::of(run);
+    let grid = Centres::of(run);
     let players = players();
     let effort = Effort { samples: 2048, counted: 512, closed: true };
     let points: Vec<(usize, f64, f64)> = (0..SHAPES.len())
@@ -116,8 +116,8 @@ fn price(bout: &Bout) -> f64 {
 }
 
 /// A panel for each profile, of a value for each point.
-fn panels<T>(grid: &Grid, bouts: &[Vec<Bout>], of: &dyn Fn(&[Bout]) -> Option<T>) -> Vec<Panel<Option<T>>> {
-    let of_shape = |(shape, bouts): (&Shape, &[Vec<Bout>])| Panel {
+fn panels<T>(grid: &Centres, bouts: &[Vec<Bout>], of: &dyn Fn(&[Bout]) -> Option<T>) -> Vec<Grid<Option<T>>> {
+    let of_shape = |(shape, bouts): (&Shape, &[Vec<Bout>])| Grid {
         label: shape.name.to_owned(),
         x: grid.transmittances.clone(),
         y: grid.tightnesses.clone(),
@@ -126,7 +126,7 @@ fn panels<T>(grid: &Grid, bouts: &[Vec<Bout>], of: &dyn Fn(&[Bout]) -> Option<T>
     SHAPES.iter().zip(bouts.chunks(grid.points())).map(of_shape).collect()
 }
 
-fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
+fn results(grid: &Centres, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let x = || Axis::linear("transmittance [1]").within(0.0, 1.0);
     let y = || Axis::logarithmic("tightness of the majorant [1]");
     let best =
@@ -159,22 +159,16 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let title = "Who wins the canonical plane, per look-up";
     let winners = HeatMap { caption, ..HeatMap::new("plane-winners", title, x(), y(), winners) };
     let (table, unsound) = summary(players, bouts);
-    let overview = Section {
-        text: vec![
-            "georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
+    let overview = Section::new("plane", "The canonical plane: who wins").with("georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
              the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know eight pilots of the same ray, \
              from variates of its own."
-                .to_owned(),
-            "Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned(),
-        ],
-        heat_maps: vec![winners],
-        tables: vec![table],
-        ..Section::new("plane", "The canonical plane: who wins")
-    };
+                .to_owned()).with("Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned()).with(winners).with(table);
     let mut prices =
-        Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator");
+        Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator")
+            .folded();
     let mut quantities =
-        Section::new("plane-quantities", "The canonical plane: variance and look-ups of each estimator");
+        Section::new("plane-quantities", "The canonical plane: variance and look-ups of each estimator")
+            .folded();
     for (e, player) in players.iter().enumerate() {
         let id = player.name.to_lowercase().replace(", ", "-").replace([' ', ','], "-");
         let map = |quantity: &str, title: &str, isolines: Vec<f64>, of: &dyn Fn(&Bout) -> f64| {
@@ -189,16 +183,16 @@ fn results(grid: &Grid, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
             )
         };
         let decades = |from: i32, to: i32| (from..=to).map(|decade| 10_f64.powi(decade)).collect::<Vec<_>>();
-        prices.heat_maps.push(map("price", "Var · look-ups/T² [1]", decades(-12, 6), &price));
+        prices.blocks.push(map("price", "Var · look-ups/T² [1]", decades(-12, 6), &price).into());
         quantities
-            .heat_maps
-            .push(map("variance", "Var/T² [1]", decades(-14, 6), &|bout| bout.relative_variance));
-        quantities.heat_maps.push(map(
-            "lookups",
-            "look-ups [1]",
-            vec![1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0],
-            &|bout| bout.lookups,
-        ));
+            .blocks
+            .push(map("variance", "Var/T² [1]", decades(-14, 6), &|bout| bout.relative_variance).into());
+        quantities.blocks.push(
+            map("lookups", "look-ups [1]", vec![1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0], &|bout| {
+                bout.lookups
+            })
+            .into(),
+        );
     }
     Plane { sections: vec![overview, prices, quantities], wins, cells: bouts.len(), unsound }
 }

@@ -3,9 +3,9 @@
 use super::sets::Arena;
 use crate::Failure;
 use crate::comparison::{Bout, Contest, Entrant, Gain, Unit, contest, entrants, gain, pooled};
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use fairflight_sources::named_seed;
 
 /// What an estimator did on a set.
@@ -95,15 +95,14 @@ fn section(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Section {
         effort.samples,
         contest.pilot_lookups,
     );
-    Section {
-        text: vec![arena.description.clone(), text],
-        charts: vec![chart(arena, rows)],
-        tables: vec![table(arena, contest, rows)],
-        ..Section::new(
-            &format!("rays-{}", arena.id),
-            &format!("{} random rays: {}", arena.set.rays.len(), arena.set.name),
-        )
-    }
+    Section::new(
+        &format!("rays-{}", arena.id),
+        &format!("{} random rays: {}", arena.set.rays.len(), arena.set.name),
+    )
+    .with(arena.description.clone())
+    .with(text)
+    .with(chart(arena, rows))
+    .with(table(arena, contest, rows))
 }
 
 /// A gain with its interval.
@@ -115,23 +114,18 @@ fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
     let curve = |label: &str, mark: &dyn Fn(f64, &Standing) -> Mark| {
         Curve::method(label).with_marks((1_u32..).zip(rows).map(|(i, row)| mark(f64::from(i), row)))
     };
-    Chart {
-        caption:
-            "Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking."
-                .to_owned(),
-        curves: vec![
-            curve("per look-up", &|x, row| measured(&row.per_lookup).mark(x)),
-            curve("per second", &|x, row| measured(&row.per_second).mark(x)),
-            curve("worst ray, per look-up", &|x, row| Mark::at(x, row.per_lookup.worst)),
-            Curve::reference("ratio tracking", [(0.0, 1.0), (rows.len() as f64 + 1.0, 1.0)]),
-        ],
-        ..Chart::new(
+    Chart::new(
             &format!("rays-{}-gain", arena.id),
             &format!("Gain over ratio tracking: {}", arena.set.name),
             Axis::linear("estimator, in the order of the table"),
             Axis::logarithmic("gain [1]"),
-        )
-    }
+        ).with_caption("Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking."
+                .to_owned()).with_curves(vec![
+            curve("per look-up", &|x, row| measured(&row.per_lookup).mark(x)),
+            curve("per second", &|x, row| measured(&row.per_second).mark(x)),
+            curve("worst ray, per look-up", &|x, row| Mark::at(x, row.per_lookup.worst)),
+            Curve::reference("ratio tracking", [(0.0, 1.0), (rows.len() as f64 + 1.0, 1.0)]),
+        ])
 }
 
 fn table(arena: &Arena, contest: &Contest, rows: &[Standing]) -> Table {

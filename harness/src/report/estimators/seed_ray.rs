@@ -10,9 +10,9 @@ use crate::estimator::{
 use crate::field::AnyProfile;
 use crate::field::{AnalyticCosineSpec, MediumKind};
 use crate::reference::Truth;
-use crate::report::document::{Cell, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::{Part, Run};
+use fairflight_document::{Cell, Section, Table};
 use fairflight_media::Tolerance;
 use fairflight_transmittance::{CombShape, PSeriesVersion, Roulette};
 use glam::DVec3;
@@ -126,11 +126,9 @@ pub(super) fn study(run: &Run<'_>) -> Result<SeedRay, Failure> {
             ("remark", "", &|(row, _)| Cell::text(row.remark)),
         ],
     );
-    let section = Section {
-        text: vec![format!("{reproduced} of {compared} variances of the study are reproduced.")],
-        tables: vec![table],
-        ..Section::new("seed", "The seed ray: all estimators, and a study repeated")
-    };
+    let section = Section::new("seed", "The seed ray: all estimators, and a study repeated")
+        .with(format!("{reproduced} of {compared} variances of the study are reproduced."))
+        .with(table);
     Ok(SeedRay { part: Part { section, unsound }, compared, reproduced })
 }
 

@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::comparison::{Effort, RaySet, chords, entrants};
 use crate::field::AnyProfile;
 use crate::field::{AnalyticCosineSpec, MediumKind, PerlinSpec};
-use crate::report::document::Volume;
+use crate::report::options::Volume;
 use crate::report::run::Run;
 use fairflight_media::{Bounds, Medium, PerlinParameters, PiecewiseConstant, Tolerance};
 use fairflight_sources::{Seeded, UniformSource};

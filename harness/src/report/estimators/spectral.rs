@@ -4,9 +4,9 @@ use super::seed_ray;
 use crate::Failure;
 use crate::field::AnyProfile;
 use crate::parallel::in_parallel;
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::{Part, Run};
+use fairflight_document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use fairflight_freeflight::spectral::{
     AverageScheme, HeroWavelength, MaxScheme, SeparateSolve, SharedDistance, SpectralFlight,
     SpectralFreeFlight, SpectralTracking,
@@ -171,12 +171,10 @@ pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
          wavelengths.";
     let (table, unsound) = tinted(run, &ray)?;
     run.advance();
-    let section = Section {
-        text: vec![text.to_owned()],
-        charts: vec![two(run, &ray)?],
-        tables: vec![table],
-        ..Section::new("spectral", "Several wavelengths at once")
-    };
+    let section = Section::new("spectral", "Several wavelengths at once")
+        .with(text.to_owned())
+        .with(two(run, &ray)?)
+        .with(table);
     Ok(Part { section, unsound })
 }
 
@@ -258,16 +256,12 @@ fn two(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<Chart, Failure> 
         }
         run.advance();
     }
-    Ok(Chart {
-        caption: "With the distances of the densest wavelength the weights of the thinner one grow along the ray; in an endless medium their variance \
-                  is infinite from a factor of 2 on (raab-2008 3.2). This ray ends: what is measured beyond is hollow."
-            .to_owned(),
-        curves: curves.into_iter().map(|(name, marks)| Curve::joined(name, marks)).collect(),
-        ..Chart::new(
+    Ok(Chart::new(
             "spectral-ratio",
             "Two wavelengths: the worse variance of what collides",
             Axis::linear("σ_2 / σ_1 [1]"),
             Axis::logarithmic("Var · look-ups / (1 − T)² [1]"),
-        )
-    })
+        ).with_caption("With the distances of the densest wavelength the weights of the thinner one grow along the ray; in an endless medium their variance \
+                  is infinite from a factor of 2 on (raab-2008 3.2). This ray ends: what is measured beyond is hollow."
+            .to_owned()).with_curves(curves.into_iter().map(|(name, marks)| Curve::joined(name, marks)).collect()))
 }

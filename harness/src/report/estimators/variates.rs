@@ -5,10 +5,10 @@ use crate::Failure;
 use crate::comparison::TestRay;
 use crate::field::AnyProfile;
 use crate::parallel::try_in_parallel;
-use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
 use crate::report::measured::{Measured, mean_and_error};
 use crate::report::run::{Part, Run};
 use fairflight_collision::{Albedo, DoubleParticle};
+use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table};
 use fairflight_media::{Bounded, Constant, Extinction, Vacuum};
 use fairflight_sources::{
     Halton, Hammersley, LatinHypercube, PointSet, PointSetError, Seeded, Sobol, UniformSource, named_seed,
@@ -120,15 +120,15 @@ pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
             let marks = rows.iter().map(|row| row.variance.mark(row.points as f64));
             Curve::joined(rows[0].source, marks)
         };
-        charts.push(Chart {
-            curves: by_source.iter().map(curve).collect(),
-            ..Chart::new(
+        charts.push(
+            Chart::new(
                 &format!("variates-{id}"),
                 &format!("Variance of a mean: {name}"),
                 Axis::logarithmic("points [1]"),
                 Axis::logarithmic("variance of the mean / T² [1]"),
             )
-        });
+            .with_curves(by_source.iter().map(curve).collect()),
+        );
         let independent: Vec<Measured> = by_source[0].iter().map(|row| row.variance).collect();
         for (row, independent) in by_source.into_iter().flat_map(|rows| rows.into_iter().zip(&independent)) {
             rows.push((row.variance.over(independent), row));
@@ -156,12 +156,8 @@ pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
             ("z of the mean", "1", &|(_, row)| Cell::Number(row.z)),
         ],
     );
-    let section = Section {
-        text: vec![text],
-        charts,
-        tables: vec![table],
-        ..Section::new("variates", "Variates from point sets")
-    };
+    let section =
+        Section::new("variates", "Variates from point sets").with(text).with_all(charts).with(table);
     Ok(Part { section, unsound })
 }
 

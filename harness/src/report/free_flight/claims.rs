@@ -3,7 +3,7 @@
 use super::laws::Laws;
 use super::splitting::Splitting;
 use super::wavelengths::Wavelengths;
-use crate::report::result::{Claim, ClaimVerdict};
+use fairflight_document::{Claim, ClaimVerdict};
 
 /// R1: algorithm 1 samples the exact density in any bounded medium.
 ///

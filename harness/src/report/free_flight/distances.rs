@@ -1,10 +1,10 @@
 //! What distances look like: the density of the first collision, sampled with and without weights, and what that costs.
 
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::Run;
 use fairflight_collision::Version;
+use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table};
 use fairflight_freeflight::{Flight, FreeFlight, Newton, Tracking, Woodcock};
 use fairflight_media::{AnalyticCosine, Constant, Counted, Extinction, OpticalThickness, Ray};
 use fairflight_sources::Seeded;
@@ -109,12 +109,15 @@ fn section(ray: &Ray<AnalyticCosine>, histograms: &[Histogram], flights: u64) ->
         let (from, to) = (cell as f64 * width, (cell + 1) as f64 * width);
         (middle(cell), (escape(from) - escape(to)) / width)
     });
-    let chart = Chart {
-        caption: format!(
+    let chart = Chart::new(
+            "distances-density",
+            "Density of the first collision",
+            Axis::linear("distance [length]"),
+            Axis::linear("density [1/length]"),
+        ).with_caption(format!(
             "The ray through the center of szirmay-kalos-2017 eq. 21, {flights} flights each. The line is σ_t T in closed form, averaged over \
              cells of {width:.3}; weighted flights count with their weight."
-        ),
-        curves: histograms
+        )).with_curves(histograms
             .iter()
             .map(|histogram| {
                 let marks = histogram.cells.iter().enumerate();
@@ -122,14 +125,7 @@ fn section(ray: &Ray<AnalyticCosine>, histograms: &[Histogram], flights: u64) ->
                 Curve::method(&histogram.name).with_marks(marks)
             })
             .chain([Curve::reference("σ_t T, exact", exact)])
-            .collect(),
-        ..Chart::new(
-            "distances-density",
-            "Density of the first collision",
-            Axis::linear("distance [length]"),
-            Axis::linear("density [1/length]"),
-        )
-    };
+            .collect());
     let table = Table::of(
         [
             "distances-cost",
@@ -144,9 +140,5 @@ fn section(ray: &Ray<AnalyticCosine>, histograms: &[Histogram], flights: u64) ->
             ("time per flight", "ns", &|histogram| Cell::Number(histogram.nanoseconds)),
         ],
     );
-    Section {
-        charts: vec![chart],
-        tables: vec![table],
-        ..Section::new("distances", "Distances with and without weights")
-    }
+    Section::new("distances", "Distances with and without weights").with(chart).with(table)
 }

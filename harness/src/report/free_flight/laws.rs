@@ -1,9 +1,9 @@
 //! Every sampler of distances on every medium, by the law that `harness verify` checks too.
 
 use crate::parallel::in_parallel;
-use crate::report::document::{Cell, Section, Table};
 use crate::report::run::{Part, Run};
 use fairflight_catalogue::{Check, Effort, catalogue};
+use fairflight_document::{Cell, Section, Table};
 use fairflight_laws::CheckResult;
 use fairflight_stats::sidak_level;
 
@@ -65,9 +65,5 @@ fn section(results: &[(String, CheckResult)]) -> Section {
             ("detectable", "1", &|(_, result)| Cell::maybe(result.detectable_relative_bias)),
         ],
     );
-    Section {
-        text: vec![text.to_owned()],
-        tables: vec![table],
-        ..Section::new("laws", "The law of every sampler")
-    }
+    Section::new("laws", "The law of every sampler").with(text.to_owned()).with(table)
 }

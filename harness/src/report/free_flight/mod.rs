@@ -8,8 +8,8 @@ mod starts;
 mod wavelengths;
 
 use crate::Failure;
-use crate::report::document::Document;
 use crate::report::run::Run;
+use fairflight_document::Document;
 
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
@@ -24,6 +24,7 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
         summary: claims::summary(&laws, &splitting, &wavelengths),
         unsound: laws.part.unsound.into_iter().chain(wavelengths.part.unsound).collect(),
         sections: vec![laws.part.section, distances, starts, splitting.section, wavelengths.part.section],
+        hero: Some("splitting-error".to_owned()),
         ..run.document("Free flight, line integrals, wavelengths")
     })
 }

@@ -2,10 +2,10 @@
 //! highly inhomogeneous hazy medium, beside ray marching at as many look-ups.
 
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
 use serde_json::{Value, json};
 
 /// Powers of the wave: the higher, the less homogeneous.
@@ -154,19 +154,17 @@ fn section(points: &[Point]) -> Section {
     let curve = |label: &str, value: fn(&Point) -> Measured| {
         Curve::joined(label, points.iter().map(|point| value(point).mark(point.inhomogeneity)))
     };
-    let chart = Chart {
-        curves: vec![
-            curve("equidistant starts", |point| point.equidistant),
-            curve("independent starts", |point| point.independent),
-            curve("ray marching, jittered (biased)", |point| point.marching),
-        ],
-        ..Chart::new(
-            "splitting-error",
-            "Noise from homogeneous to inhomogeneous",
-            Axis::logarithmic("majorant / mean extinction [1]"),
-            Axis::logarithmic("standard deviation of a pixel [radiance]"),
-        )
-    };
+    let chart = Chart::new(
+        "splitting-error",
+        "Noise from homogeneous to inhomogeneous",
+        Axis::logarithmic("majorant / mean extinction [1]"),
+        Axis::logarithmic("standard deviation of a pixel [radiance]"),
+    )
+    .with_curves(vec![
+        curve("equidistant starts", |point| point.equidistant),
+        curve("independent starts", |point| point.independent),
+        curve("ray marching, jittered (biased)", |point| point.marching),
+    ]);
     let per_ray = |point: &Point, m: usize| {
         let window = &point.methods[m].1.window;
         Cell::Number(window.lookups_per_pixel() / f64::from(window.rays_per_pixel()))
@@ -195,15 +193,9 @@ fn section(points: &[Point]) -> Section {
         (format!("p = {}", point.power), images.map(picture).collect())
     };
     let shown = points.iter().filter(|point| SHOWN.contains(&point.power)).map(pictures);
-    Section {
-        text: vec![text],
-        charts: vec![chart],
-        tables: vec![table],
-        galleries: vec![Gallery::of_images(
-            "splitting-images",
-            "Homogeneous and highly inhomogeneous",
-            shown.collect(),
-        )],
-        ..Section::new("splitting", "raab-2008 fig. 2: splitting along the primary ray")
-    }
+    Section::new("splitting", "raab-2008 fig. 2: splitting along the primary ray")
+        .with(text)
+        .with(chart)
+        .with(table)
+        .with(Gallery::of_images("splitting-images", "Homogeneous and highly inhomogeneous", shown.collect()))
 }

@@ -1,7 +1,7 @@
 //! Fig. 1: first collisions from independent and from equidistant variates.
 
-use crate::report::document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Mark, Section, Table};
 use fairflight_sources::{Seeded, UniformSource};
 
 /// First collisions that are shown.
@@ -46,19 +46,15 @@ pub(super) fn section(run: &Run<'_>) -> Section {
         let points = rows.flat_map(|row| set(equidistant, &mut source).into_iter().map(move |t| (t, row)));
         Curve::method(label).with_marks(points.map(|(t, row)| Mark::at(t, f64::from(row))))
     };
-    let chart = Chart {
-        caption: format!(
-            "Four sets of {POINTS} first collisions of each kind, majorant optical thickness {THICKNESS}: the points from which the flights of \
-             algorithm 2 start."
-        ),
-        curves: vec![curve("independent", false, 1..5), curve("equidistant", true, 5..9)],
-        ..Chart::new(
+    let chart = Chart::new(
             "starts-points",
             "First collisions along a ray",
             Axis::linear("distance / length of the ray [1]"),
             Axis::linear("independent 1 to 4, equidistant 5 to 8").within(0.0, 9.0),
-        )
-    };
+        ).with_caption(format!(
+            "Four sets of {POINTS} first collisions of each kind, majorant optical thickness {THICKNESS}: the points from which the flights of \
+             algorithm 2 start."
+        )).with_curves(vec![curve("independent", false, 1..5), curve("equidistant", true, 5..9)]);
     let table = Table::of(
         [
             "starts-gaps",
@@ -73,9 +69,5 @@ pub(super) fn section(run: &Run<'_>) -> Section {
             }),
         ],
     );
-    Section {
-        charts: vec![chart],
-        tables: vec![table],
-        ..Section::new("starts", "raab-2008 fig. 1: where flights start")
-    }
+    Section::new("starts", "raab-2008 fig. 1: where flights start").with(chart).with(table)
 }

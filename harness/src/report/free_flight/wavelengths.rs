@@ -1,9 +1,9 @@
 //! Section 3.2: one distance for two wavelengths.
 
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::{Part, Run};
+use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table};
 use fairflight_laws::measure;
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_stats::{ClosedMoments, Reference, Scores, Verdict, judge};
@@ -116,18 +116,16 @@ fn section(points: &[Point], growing: &[(f64, Vec<f64>)], samples: u64) -> Secti
         if point.verdict.variance_p.is_some() { mark } else { mark.hollow() }
     });
     let line = (5..=399).map(|i| f64::from(i) * 0.005).filter(|ratio| (ratio - 1.0).abs() > 0.02);
-    let chart = Chart {
-        curves: vec![
-            Curve::method("measured").with_marks(marks),
-            Curve::reference("formula of 3.2", line.map(|ratio| (ratio, closed_form(ratio)))),
-        ],
-        ..Chart::new(
-            "wavelengths-variance",
-            "Variance of one wavelength sampled by another",
-            Axis::linear("σ₂/σ₁ [1]"),
-            Axis::logarithmic("variance · σ₁² [1]").within(1e-3, 1e3),
-        )
-    };
+    let chart = Chart::new(
+        "wavelengths-variance",
+        "Variance of one wavelength sampled by another",
+        Axis::linear("σ₂/σ₁ [1]"),
+        Axis::logarithmic("variance · σ₁² [1]").within(1e-3, 1e3),
+    )
+    .with_curves(vec![
+        Curve::method("measured").with_marks(marks),
+        Curve::reference("formula of 3.2", line.map(|ratio| (ratio, closed_form(ratio)))),
+    ]);
     let verdict = |point: &Point| match (point.verdict.sound, point.verdict.variance_p.is_some()) {
         (Some(false), _) => "does not hold",
         (Some(true), true) => "holds",
@@ -162,12 +160,11 @@ fn section(points: &[Point], growing: &[(f64, Vec<f64>)], samples: u64) -> Secti
             ("sample variance", "1", &|(.., variance)| Cell::Number(*variance)),
         ],
     );
-    Section {
-        text: vec![text],
-        charts: vec![chart],
-        tables: vec![table, infinite],
-        ..Section::new("wavelengths", "raab-2008 section 3.2: two wavelengths at once")
-    }
+    Section::new("wavelengths", "raab-2008 section 3.2: two wavelengths at once")
+        .with(text)
+        .with(chart)
+        .with(table)
+        .with(infinite)
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use super::equal_cost::EqualCost;
 use super::versions::{Sweep, Versions};
-use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::speed::Speed;
+use fairflight_document::{Claim, ClaimVerdict};
 
 /// S5: beyond the greatest extinction the variance does not fall, look-ups grow, and the best figure of merit is below it.
 ///

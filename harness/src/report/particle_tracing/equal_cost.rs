@@ -2,10 +2,10 @@
 
 use super::{REPLICAS, scenes};
 use crate::Failure;
-use crate::report::document::{Axis, Band, Cell, Chart, Curve, Gallery, Section, Table, Vertical};
 use crate::report::measured::{Measured, least};
 use crate::report::replicas::Replicas;
 use crate::report::run::Run;
+use fairflight_document::{Axis, Band, Cell, Chart, Curve, Gallery, Section, Table, Vertical};
 
 /// Sampling extinctions; the greatest extinction is 1, that of the larger dense regions about 0.6.
 const SAMPLING: [f64; 9] = [0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.85, 1.0];
@@ -76,24 +76,25 @@ fn section(points: &[Point], budget: f64, resolution: u32) -> Section {
          follows."
     );
     let (best, range) = optimum(points);
-    let chart = Chart {
-        caption: format!(
-            "The least error is at σ_samp = {}; values from {} to {} cannot be told from it.",
-            best.sigma_samp, range[0], range[1]
-        ),
-        curves: vec![Curve::joined("adaptive", points.iter().map(|point| point.rmse.mark(point.sigma_samp)))],
-        verticals: vec![
-            Vertical { x: 0.6, label: "dense regions".to_owned() },
-            Vertical { x: 1.0, label: "greatest σ_t".to_owned() },
-        ],
-        bands: Band::between(range, "optimum").into_iter().collect(),
-        ..Chart::new(
-            "noise-error",
-            "Error at equal cost against σ_samp",
-            Axis::logarithmic("σ_samp [1/length]"),
-            Axis::logarithmic("RMSE [radiance]"),
-        )
-    };
+    let chart = Chart::new(
+        "noise-error",
+        "Error at equal cost against σ_samp",
+        Axis::logarithmic("σ_samp [1/length]"),
+        Axis::logarithmic("RMSE [radiance]"),
+    )
+    .with_caption(format!(
+        "The least error is at σ_samp = {}; values from {} to {} cannot be told from it.",
+        best.sigma_samp, range[0], range[1]
+    ))
+    .with_curves(vec![Curve::joined(
+        "adaptive",
+        points.iter().map(|point| point.rmse.mark(point.sigma_samp)),
+    )])
+    .with_verticals(vec![
+        Vertical { x: 0.6, label: "dense regions".to_owned() },
+        Vertical { x: 1.0, label: "greatest σ_t".to_owned() },
+    ])
+    .with_bands(Band::between(range, "optimum").into_iter().collect());
     let table = Table::of(
         ["noise-table", "Rays and error at equal cost", ""],
         points,
@@ -112,11 +113,9 @@ fn section(points: &[Point], budget: f64, resolution: u32) -> Section {
     };
     let shown = points.iter().filter(|point| SHOWN.contains(&point.sigma_samp)).map(picture);
     let row = (String::new(), shown.collect());
-    Section {
-        text: vec![text],
-        charts: vec![chart],
-        tables: vec![table],
-        galleries: vec![Gallery::of_images("noise-images", "The images", vec![row])],
-        ..Section::new("noise", &format!("Fig. 7: Perlin noise at {budget} look-ups per pixel"))
-    }
+    Section::new("noise", &format!("Fig. 7: Perlin noise at {budget} look-ups per pixel"))
+        .with(text)
+        .with(chart)
+        .with(table)
+        .with(Gallery::of_images("noise-images", "The images", vec![row]))
 }

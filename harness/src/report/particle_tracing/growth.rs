@@ -1,10 +1,10 @@
 //! Where a walk has a second moment.
 
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table, Vertical};
 use crate::report::measured::Measured;
 use crate::report::run::{Part, Run};
 use fairflight_collision::Version;
+use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table, Vertical};
 use fairflight_media::phase::{Isotropic, Rayleigh};
 use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, Medium, PhaseFunction};
 use fairflight_paths::{Criticality, Growth, Uniform, Walk, second_moment_growth};
@@ -112,19 +112,18 @@ fn section(rows: &[Row]) -> Section {
         Curve::method(medium).with_line(line).with_marks(marks)
     };
     let one = Curve::reference("growth 1", [(RATIOS[0], 1.0), (RATIOS[RATIOS.len() - 1], 1.0)]);
-    let chart = Chart {
-        caption:
-            "Albedo 0.7, non-terminating. Above 1 there is no second moment. The line is (a r + |1 − r|)²."
-                .to_owned(),
-        curves: media.into_iter().map(curve).chain([one]).collect(),
-        verticals: vec![Vertical { x: 0.85, label: "r = 2/(1 + a)".to_owned() }],
-        ..Chart::new(
-            "growth-factor",
-            "Growth of the squared energy per collision",
-            Axis::logarithmic("σ_samp / greatest σ_t [1]"),
-            Axis::logarithmic("growth per collision [1]"),
-        )
-    };
+    let chart = Chart::new(
+        "growth-factor",
+        "Growth of the squared energy per collision",
+        Axis::logarithmic("σ_samp / greatest σ_t [1]"),
+        Axis::logarithmic("growth per collision [1]"),
+    )
+    .with_caption(
+        "Albedo 0.7, non-terminating. Above 1 there is no second moment. The line is (a r + |1 − r|)²."
+            .to_owned(),
+    )
+    .with_curves(media.into_iter().map(curve).chain([one]).collect())
+    .with_verticals(vec![Vertical { x: 0.85, label: "r = 2/(1 + a)".to_owned() }]);
     let table = Table::of(
         ["growth-table", "Growth per collision", ""],
         rows,
@@ -142,10 +141,5 @@ fn section(rows: &[Row]) -> Section {
             }),
         ],
     );
-    Section {
-        text: vec![text.to_owned()],
-        charts: vec![chart],
-        tables: vec![table],
-        ..Section::new("growth", "Where a walk has a second moment")
-    }
+    Section::new("growth", "Where a walk has a second moment").with(text.to_owned()).with(chart).with(table)
 }

@@ -8,8 +8,8 @@ mod speed;
 mod versions;
 
 use crate::Failure;
-use crate::report::document::Document;
 use crate::report::run::Run;
+use fairflight_document::Document;
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 4;
@@ -27,6 +27,7 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
         summary: claims::summary(&even, &sun, &noise, &speed),
         unsound: growth.unsound,
         sections: vec![even.section, sun.section, noise.section, speed.section, growth.section],
+        hero: Some("even-merit".to_owned()),
         ..run.document("Particle tracing with any sampling extinction")
     })
 }

@@ -2,10 +2,10 @@
 
 use super::{REPLICAS, scenes};
 use crate::Failure;
-use crate::report::document::{Axis, Band, Cell, Chart, Curve, Gallery, Mark, Section, Table, Vertical};
 use crate::report::measured::{Measured, least};
 use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
+use fairflight_document::{Axis, Band, Cell, Chart, Curve, Gallery, Mark, Section, Table, Vertical};
 
 /// Light around the medium.
 #[derive(Debug)]
@@ -142,46 +142,42 @@ fn section(run: &Run<'_>, lighting: &Lighting, sweeps: &[Sweep]) -> Section {
         run.samples(RAYS),
         REPLICAS
     );
-    let chart = |what: &str, title: &str, y: Axis, value: fn(&Point) -> Mark| Chart {
-        curves: sweeps
-            .iter()
-            .map(|sweep| Curve::joined(sweep.name, sweep.points.iter().map(value)))
-            .collect(),
-        verticals: vec![Vertical { x: 1.0, label: "greatest σ_t".to_owned() }],
-        ..Chart::new(&id(what), title, Axis::logarithmic("σ_samp [1/length]"), y)
+    let chart = |what: &str, title: &str, y: Axis, value: fn(&Point) -> Mark| {
+        Chart::new(&id(what), title, Axis::logarithmic("σ_samp [1/length]"), y)
+            .with_curves(
+                sweeps
+                    .iter()
+                    .map(|sweep| Curve::joined(sweep.name, sweep.points.iter().map(value)))
+                    .collect(),
+            )
+            .with_verticals(vec![Vertical { x: 1.0, label: "greatest σ_t".to_owned() }])
     };
     let (best, range) = sweeps[0].optimum();
-    let merit = Chart {
-        caption: format!(
-            "The adaptive version has its optimum at σ_samp = {}; values from {} to {} cannot be told from it.",
-            best.sigma_samp, range[0], range[1]
-        ),
-        bands: Band::between(range, "optimum, adaptive").into_iter().collect(),
-        ..chart(
-            "merit",
-            "Figure of merit against σ_samp",
-            Axis::logarithmic("1/(MSE · look-ups) [1/radiance²]"),
-            |point| point.merit().mark(point.sigma_samp),
-        )
-    };
-    Section {
-        text: vec![text],
-        charts: vec![
-            chart(
-                "error",
-                "Error against σ_samp",
-                Axis::logarithmic("mean squared error [radiance²]"),
-                |point| point.squared_error.mark(point.sigma_samp),
-            ),
-            chart("lookups", "Look-ups against σ_samp", Axis::linear("look-ups per pixel [1]"), |point| {
-                Mark::at(point.sigma_samp, point.lookups)
-            }),
-            merit,
-        ],
-        tables: vec![table(&id("table"), sweeps)],
-        galleries: vec![gallery(&id("images"), lighting, sweeps)],
-        ..Section::new(&id("versions"), &format!("Fig. 6: three versions under {}", lighting.words))
-    }
+    let merit = chart(
+        "merit",
+        "Figure of merit against σ_samp",
+        Axis::logarithmic("1/(MSE · look-ups) [1/radiance²]"),
+        |point| point.merit().mark(point.sigma_samp),
+    )
+    .with_caption(format!(
+        "The adaptive version has its optimum at σ_samp = {}; values from {} to {} cannot be told from it.",
+        best.sigma_samp, range[0], range[1]
+    ))
+    .with_bands(Band::between(range, "optimum, adaptive").into_iter().collect());
+    Section::new(&id("versions"), &format!("Fig. 6: three versions under {}", lighting.words))
+        .with(text)
+        .with(chart(
+            "error",
+            "Error against σ_samp",
+            Axis::logarithmic("mean squared error [radiance²]"),
+            |point| point.squared_error.mark(point.sigma_samp),
+        ))
+        .with(chart("lookups", "Look-ups against σ_samp", Axis::linear("look-ups per pixel [1]"), |point| {
+            Mark::at(point.sigma_samp, point.lookups)
+        }))
+        .with(merit)
+        .with(table(&id("table"), sweeps))
+        .with(gallery(&id("images"), lighting, sweeps))
 }
 
 fn table(id: &str, sweeps: &[Sweep]) -> Table {

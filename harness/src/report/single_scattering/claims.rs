@@ -2,8 +2,8 @@
 
 use super::POINT;
 use super::equal_cost::{Budget, Study};
-use crate::report::result::{Claim, ClaimVerdict};
 use crate::report::speed::Speed;
+use fairflight_document::{Claim, ClaimVerdict};
 
 /// What the names of the methods that S9 says win begin with: they differ in the number of samples per ray.
 const MIS: &str = "source and scattering";

@@ -3,10 +3,10 @@
 use super::methods::{self, Method};
 use super::{LIGHTINGS, Lighting, REPLICAS};
 use crate::Failure;
-use crate::report::document::{Cell, Gallery, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::{Part, Run};
+use fairflight_document::{Cell, Gallery, Section, Table};
 use fairflight_sources::named_seed;
 
 /// Look-ups per pixel, averaged over all, as in the paper.
@@ -147,17 +147,14 @@ fn section(run: &Run<'_>, lighting: &Lighting, budgets: &[Budget], reference: &R
         reference.squared_error.sqrt(),
         REPLICAS
     );
-    let mut section = Section {
-        text: vec![text],
-        ..Section::new(
-            &format!("{}-equal-cost", lighting.id),
-            &format!("Fig. 12: equal look-ups per pixel, {}", lighting.words),
-        )
-    };
+    let mut section = Section::new(
+        &format!("{}-equal-cost", lighting.id),
+        &format!("Fig. 12: equal look-ups per pixel, {}", lighting.words),
+    )
+    .with(text);
     for budget in budgets {
         let id = format!("{}-{}", lighting.id, budget.lookups);
-        section.tables.push(table(&id, budget));
-        section.galleries.push(gallery(&id, lighting, budget, reference));
+        section = section.with(table(&id, budget)).with(gallery(&id, lighting, budget, reference));
     }
     section
 }

@@ -6,9 +6,9 @@ mod methods;
 mod speed;
 
 use crate::Failure;
-use crate::report::document::Document;
 use crate::report::replicas::Subject;
 use crate::report::run::Run;
+use fairflight_document::Document;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -73,6 +73,7 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
         claims: vec![claims::s9(&studies)],
         unsound: studies.iter().flat_map(|study| study.part.unsound.clone()).collect(),
         sections: studies.into_iter().map(|study| study.part.section).chain([speed.section]).collect(),
+        hero: Some("speed-seconds".to_owned()),
         ..run.document("Single scattering of a point light")
     })
 }

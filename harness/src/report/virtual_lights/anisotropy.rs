@@ -3,10 +3,10 @@
 use super::reference::Reference;
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::replicas::Replicas;
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 6;
@@ -75,15 +75,13 @@ fn section(run: &Run<'_>, points: &[Point]) -> Section {
         ],
     );
     let marks = points.iter().map(|point| point.error.mark(point.g));
-    let chart = Chart {
-        curves: vec![Curve::joined("1-to-1, locally homogeneous", marks)],
-        ..Chart::new(
-            "anisotropy-error",
-            "Error by mean cosine",
-            Axis::linear("mean cosine g [1]"),
-            Axis::linear("RMSE / mean radiance [1]"),
-        )
-    };
+    let chart = Chart::new(
+        "anisotropy-error",
+        "Error by mean cosine",
+        Axis::linear("mean cosine g [1]"),
+        Axis::linear("RMSE / mean radiance [1]"),
+    )
+    .with_curves(vec![Curve::joined("1-to-1, locally homogeneous", marks)]);
     let row = |label: &str, suffix: &str, images: fn(&Point) -> &Replicas| {
         let picture = |(k, point): (usize, &Point)| {
             let id = format!("anisotropy-{k}{suffix}");
@@ -95,11 +93,9 @@ fn section(run: &Run<'_>, points: &[Point]) -> Section {
         row("virtual point lights", "", |point| &point.images),
         row("path tracing", "-reference", |point| &point.reference.shown),
     ];
-    Section {
-        text: vec![text],
-        tables: vec![table],
-        charts: vec![chart],
-        galleries: vec![Gallery::of_images("anisotropy-images", "The images", rows)],
-        ..Section::new("anisotropy", "Fig. 13: backward, isotropic and forward scattering")
-    }
+    Section::new("anisotropy", "Fig. 13: backward, isotropic and forward scattering")
+        .with(text)
+        .with(chart)
+        .with(table)
+        .with(Gallery::of_images("anisotropy-images", "The images", rows))
 }

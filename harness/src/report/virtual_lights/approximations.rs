@@ -3,10 +3,10 @@
 use super::reference::Reference;
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
-use crate::report::document::{Cell, Gallery, Picture, Pixels, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
+use fairflight_document::{Cell, Gallery, Picture, Pixels, Section, Table};
 use serde_json::json;
 
 /// Independent images per measurement.
@@ -49,7 +49,7 @@ pub(super) struct Approximations {
 
 pub(super) fn study(run: &Run<'_>) -> Result<Approximations, Failure> {
     let exact = Choice { strategy: "one_to_one", placement: "locally_homogeneous", ..Choice::EXACT };
-    let mut transmittance = compare(
+    let transmittance = compare(
         run,
         &scenes::smoke_room(scenes::side(run))?,
         ("transmittance", "Fig. 5: exact and approximate transmittance to the compensation vertex"),
@@ -61,14 +61,11 @@ pub(super) fn study(run: &Run<'_>) -> Result<Approximations, Failure> {
         ("visibility", "Fig. 8: visibility of the compensation vertex, seen and ignored"),
         [exact, Choice { visibility: "ignored", ..exact }],
     )?;
-    visibility.section.text.push(
-        "The room has even smoke (σ_t = 0.6) and a thin screen under the lamp, seen from below. Where visibility is ignored the vertices of points \
-         of the medium lie in the medium only, also behind surfaces; what surfaces would reflect over short distances is missing."
-            .to_owned(),
-    );
+    let room = "The room has even smoke (σ_t = 0.6) and a thin screen under the lamp, seen from below. Where visibility is ignored the vertices of points \
+         of the medium lie in the medium only, also behind surfaces; what surfaces would reflect over short distances is missing.";
+    visibility.section.blocks.insert(1, room.into());
     let (inside, counted) = vertices(run)?;
-    let sections =
-        vec![std::mem::take(&mut transmittance.section), std::mem::take(&mut visibility.section), counted];
+    let sections = vec![transmittance.section.clone(), visibility.section.clone(), counted];
     Ok(Approximations { transmittance, visibility, inside, sections })
 }
 
@@ -143,7 +140,7 @@ fn compare(
             vec![(String::new(), pictures)],
         )
     };
-    let section = Section { text: vec![text], galleries: vec![gallery], ..Section::new(id, title) };
+    let section = Section::new(id, title).with(text).with(gallery);
     Ok(Difference { relative: change, greatest, noise, scale, section })
 }
 
@@ -177,10 +174,8 @@ fn vertices(run: &Run<'_>) -> Result<(Vec<(f64, f64)>, Section), Failure> {
             ("locally homogeneous", "1", &|(_, [_, local])| Cell::Number(*local)),
         ],
     );
-    let section = Section {
-        text: vec![text.to_owned()],
-        tables: vec![table],
-        ..Section::new("vertices", "Compensation vertices that a free flight loses")
-    };
+    let section = Section::new("vertices", "Compensation vertices that a free flight loses")
+        .with(text.to_owned())
+        .with(table);
     Ok((shares.into_iter().map(|(bound, [free, _])| (bound, free)).collect(), section))
 }

@@ -7,7 +7,7 @@ use super::costs::Costs;
 use super::sizes::Sizes;
 use super::strategies::Strategies;
 use crate::report::measured::Measured;
-use crate::report::result::{Claim, ClaimVerdict};
+use fairflight_document::{Claim, ClaimVerdict};
 
 /// Standard errors between an unbiased mean and that of the reference that are too many: the errors come from six images and more, so that
 /// Student's t with five degrees of freedom applies, which exceeds this by chance once in six thousand times.

@@ -3,10 +3,10 @@
 use super::reference::Reference;
 use super::scenes::{self, Choice, lights};
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Mark, Picture, Pixels, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::replicas::Replicas;
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Gallery, Mark, Picture, Pixels, Section, Table};
 use serde_json::{Value, json};
 
 /// Independent images per measurement.
@@ -109,11 +109,7 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
             vec![(String::new(), pictures)],
         )
     };
-    Ok(Section {
-        text: vec![text],
-        galleries: vec![gallery],
-        ..Section::new("splotches", "Fig. 2: splotches, or too little light")
-    })
+    Ok(Section::new("splotches", "Fig. 2: splotches, or too little light").with(text).with(gallery))
 }
 
 /// Fig. 11 and E1: the energy of the room, stage by stage.
@@ -176,12 +172,10 @@ fn energy(run: &Run<'_>, reference: &Reference) -> Result<(Vec<Stage>, Section),
             rows.collect(),
         )
     };
-    let section = Section {
-        text: vec![text],
-        tables: vec![table],
-        galleries: vec![gallery],
-        ..Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke")
-    };
+    let section = Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke")
+        .with(text)
+        .with(table)
+        .with(gallery);
     Ok((measured, section))
 }
 
@@ -226,15 +220,11 @@ fn scanline(run: &Run<'_>) -> Result<Section, Failure> {
          ground truth.",
         run.samples(sets)
     );
-    let chart = Chart {
-        caption: "The middle row of the room. Unbounded lights of one set jump where an eye ray passes near one of them.".to_owned(),
-        curves,
-        ..Chart::new(
+    let chart = Chart::new(
             "scanline-radiance",
             "Fig. 4: a scanline",
             Axis::linear("column [pixel]"),
             Axis::linear("radiance [radiance]"),
-        )
-    };
-    Ok(Section { text: vec![text], charts: vec![chart], ..Section::new("scanline", "Fig. 4: a scanline") })
+        ).with_caption("The middle row of the room. Unbounded lights of one set jump where an eye ray passes near one of them.".to_owned()).with_curves(curves);
+    Ok(Section::new("scanline", "Fig. 4: a scanline").with(text).with(chart))
 }

@@ -4,11 +4,11 @@ use super::scenes::{self, BOUND, Choice, lights};
 use crate::Failure;
 use crate::field::AnyMedium;
 use crate::plan::Spectra;
-use crate::report::document::{Cell, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::Run;
 use cpu_time::ThreadTime;
 use fairflight_collision::Version;
+use fairflight_document::{Cell, Section, Table};
 use fairflight_media::phase::Isotropic;
 use fairflight_media::{Medium, Ray};
 use fairflight_paths::transport::{Event, Types, Vertex, World};
@@ -109,11 +109,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Costs, Failure> {
          here visibility is {} rectangles tried one by one, and transmittance three octaves of noise at each look-up.",
         6
     );
-    let section = Section {
-        text: vec![text],
-        tables: vec![images, parts],
-        ..Section::new("costs", "Fig. 10: where the time goes")
-    };
+    let section = Section::new("costs", "Fig. 10: where the time goes").with(text).with(images).with(parts);
     Ok(Costs { share_ignored, share_full, section })
 }
 

@@ -11,8 +11,8 @@ mod sizes;
 mod strategies;
 
 use crate::Failure;
-use crate::report::document::Document;
 use crate::report::run::Run;
+use fairflight_document::Document;
 use reference::{ROOM_PATHS, Reference};
 
 /// What makes the images of the room neither black nor white.
@@ -56,6 +56,7 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
             .chain(approximations.sections)
             .chain([costs.section, anisotropy.section])
             .collect(),
+        hero: Some("strategies-time".to_owned()),
         ..run.document("Virtual point lights and bias compensation")
     })
 }

@@ -2,9 +2,9 @@
 
 use super::scenes::{self, BOUND, Choice};
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table};
 
 /// Independent images per measurement.
 const REPLICAS: u32 = 4;
@@ -60,15 +60,13 @@ pub(super) fn study(run: &Run<'_>) -> Result<Sizes, Failure> {
     let curve = |(m, method): (usize, Method)| {
         Curve::joined(method.name, PATHS.iter().zip(&costs).map(|(&paths, row)| row[m].mark(paths.into())))
     };
-    let chart = Chart {
-        curves: methods().into_iter().enumerate().map(curve).collect(),
-        ..Chart::new(
-            "sizes-error",
-            "Error at equal time over the size of a set",
-            Axis::logarithmic("light paths of a set [1]"),
-            Axis::logarithmic("RMSE · √(CPU seconds) [radiance √s]"),
-        )
-    };
+    let chart = Chart::new(
+        "sizes-error",
+        "Error at equal time over the size of a set",
+        Axis::logarithmic("light paths of a set [1]"),
+        Axis::logarithmic("RMSE · √(CPU seconds) [radiance √s]"),
+    )
+    .with_curves(methods().into_iter().enumerate().map(curve).collect());
     let ratio = |[many, one, local]: &[Measured; 3]| [one.over(many), local.over(many)];
     let table = Table::of(
         [
@@ -90,11 +88,6 @@ pub(super) fn study(run: &Run<'_>) -> Result<Sizes, Failure> {
         "The same room and bound (b = {BOUND}). The time of 1-to-N grows with the lights of a set, whose number does little for the noise of a \
          compensation vertex; that of 1-to-1 does not. Errors from the scatter of a pixel over its sets, {REPLICAS} independent images."
     );
-    let section = Section {
-        text: vec![text],
-        charts: vec![chart],
-        tables: vec![table],
-        ..Section::new("sizes", "The size of a set")
-    };
+    let section = Section::new("sizes", "The size of a set").with(text).with(chart).with(table);
     Ok(Sizes { ratios: PATHS.into_iter().zip(costs.iter().map(ratio)).collect(), section })
 }

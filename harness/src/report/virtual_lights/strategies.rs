@@ -3,10 +3,10 @@
 use super::reference::{ROOM_PATHS, Reference};
 use super::scenes::{self, BOUND, Choice, path_tracer};
 use crate::Failure;
-use crate::report::document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
 use crate::report::measured::Measured;
 use crate::report::replicas::Replicas;
 use crate::report::run::Run;
+use fairflight_document::{Axis, Cell, Chart, Curve, Gallery, Section, Table};
 use serde_json::Value;
 
 /// Independent images per measurement.
@@ -110,16 +110,14 @@ pub(super) fn study(run: &Run<'_>, reference: &Reference) -> Result<Strategies, 
         }
         curves.push(Curve::joined(method.name, marks));
     }
-    let chart = Chart {
-        caption: "Every set of lights is new, so that all fall with the square root of time.".to_owned(),
-        curves,
-        ..Chart::new(
-            "strategies-time",
-            "Fig. 7: error over time",
-            Axis::logarithmic("CPU seconds of an image [s]"),
-            Axis::logarithmic("RMSE [radiance]"),
-        )
-    };
+    let chart = Chart::new(
+        "strategies-time",
+        "Fig. 7: error over time",
+        Axis::logarithmic("CPU seconds of an image [s]"),
+        Axis::logarithmic("RMSE [radiance]"),
+    )
+    .with_caption("Every set of lights is new, so that all fall with the square root of time.".to_owned())
+    .with_curves(curves);
     let text = format!(
         "The room with smoke in gray, without its lamp in the picture, {side} x {side} pixels, sets of {PATHS} light paths, b = {BOUND}, unlimited steps, transmittance and visibility \
          exact: all of these are unbiased. 1-to-N: one compensation vertex per point, connected with all lights. N-to-1: one vertex for each \
@@ -128,13 +126,11 @@ pub(super) fn study(run: &Run<'_>, reference: &Reference) -> Result<Strategies, 
         reference.squared_error.sqrt(),
         side = scenes::side(run)
     );
-    let section = Section {
-        text: vec![text],
-        charts: vec![chart],
-        tables: vec![table(&entries)],
-        galleries: vec![gallery(&entries, reference)],
-        ..Section::new("strategies", "Fig. 6 and 7: strategies of compensation at equal time")
-    };
+    let section = Section::new("strategies", "Fig. 6 and 7: strategies of compensation at equal time")
+        .with(text)
+        .with(chart)
+        .with(table(&entries))
+        .with(gallery(&entries, reference));
     Ok(Strategies { entries, section })
 }
 
