@@ -10,11 +10,12 @@ const PROBE: &str = r##"<script>
   const found = { errors: [] };
   window.addEventListener("error", (event) => found.errors.push(String(event.message)));
   const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
-  await sleep(4000);
   try {
     const figures = [...document.querySelectorAll("figure.plot")].filter((figure) => figure.querySelector(".live"));
     found.figures = figures.length;
-    found.drawn = figures.filter((figure) => figure.querySelector(".live .main-svg")).length;
+    const drawn = () => figures.filter((figure) => figure.querySelector(".live .main-svg")).length;
+    for (let tries = 0; tries < 600 && drawn() < figures.length; tries++) await sleep(100);
+    found.drawn = drawn();
     found.hidden = figures.every((figure) => getComputedStyle(figure.querySelector(".still")).display === "none");
     const plot = document.querySelector("#variance .live");
     const curve = plot.data.findIndex((trace) => trace.mode === "markers");
@@ -43,6 +44,13 @@ const PROBE: &str = r##"<script>
 })();
 </script></body>"##;
 
+/// Everything is in view at once: a browser without a window shows frames when it likes.
+const IN_VIEW: &str = "<head><script>window.IntersectionObserver = class {
+  constructor(tell) { this.tell = tell; }
+  observe(target) { this.tell([{ isIntersecting: true, target }]); }
+  unobserve() {}
+};</script>";
+
 /// The name of a browser on this machine.
 fn chromium() -> Option<&'static str> {
     ["chromium", "chromium-browser", "google-chrome"]
@@ -54,8 +62,8 @@ fn chromium() -> Option<&'static str> {
 fn seen(browser: &str, page: &Path, width: u32) -> serde_json::Value {
     let profile = tempfile::tempdir().unwrap();
     let output = Command::new(browser)
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", "--virtual-time-budget=30000"])
-        .arg(format!("--window-size={width},6000"))
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", "--virtual-time-budget=90000"])
+        .arg(format!("--window-size={width},9000"))
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("file://{}", page.display()))
         .output()
@@ -80,7 +88,8 @@ fn a_reader_can_point_hide_and_zoom() {
     let page = folder.path().join("index.html");
     let html = std::fs::read_to_string(&page).unwrap();
     let end = html.rfind("</body>").unwrap();
-    std::fs::write(&page, format!("{}{PROBE}{}", &html[..end], &html[end + "</body>".len()..])).unwrap();
+    let html = format!("{}{PROBE}{}", &html[..end], &html[end + "</body>".len()..]);
+    std::fs::write(&page, html.replacen("<head>", IN_VIEW, 1)).unwrap();
     for width in [1400, 500] {
         let found = seen(browser, &page, width);
         assert_eq!(found["errors"], serde_json::json!([]), "{found}");
