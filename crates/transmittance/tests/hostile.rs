@@ -140,9 +140,9 @@ fn sweep<F: Breakpoints + OpticalThickness + IntervalBounds>(name: &'static str,
     combs(&mut sweep, field);
     sweep.check("regular", field, &Regular, known);
 
-    let mut experience = Experience::default();
-    (0..8).for_each(|seed| experience.observe(&Pilot::of(&bounded, &mut Seeded::new(seed))));
     if depth < 2e4 {
+        let mut experience = Experience::default();
+        (0..8).for_each(|seed| experience.observe(&Pilot::of(&bounded, &mut Seeded::new(seed))));
         for experience in [experience, Experience::default()] {
             let hybrid = Hybrid::choose(&experience, length, depth, Hybrid::USUAL_BUDGET);
             sweep.check("hybrid", bounded, &hybrid, (Law::Open, 6.0 * depth));
