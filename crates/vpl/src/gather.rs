@@ -91,7 +91,7 @@ impl<W: Types> Gather<'_, W> {
         // raab-2008 eq. 8: a cosine at each end that lies on a surface.
         let geometric = y.cosine(direction) * vpl.vertex.cosine(-direction) / squared;
         let term = self.term.of(geometric);
-        if term == 0.0 || geometric == 0.0 {
+        if term == 0.0 {
             return W::Spectrum::ZERO;
         }
         let (from, to) = (y.surface(), vpl.vertex.surface());
