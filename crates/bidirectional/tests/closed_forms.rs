@@ -3,7 +3,7 @@
 mod common;
 
 use common::{diffuse, rectangle};
-use fairflight_bidirectional::{Bidirectional, Exact, Subpath, Walking, Weigh};
+use fairflight_bidirectional::{Bidirectional, Exact, Found, Subpath, Walking, Weigh};
 use fairflight_collision::Version;
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic};
 use fairflight_media::{Bounds, EmptySpace, Homogeneous};
@@ -15,6 +15,7 @@ use fairflight_sources::{Seeded, UniformSource, derive_seed};
 use fairflight_stats::{Moments, Reference, judge};
 use fairflight_transmittance::Regular;
 use glam::{DVec3, dvec3};
+use std::f64::consts::PI;
 
 /// False alarm of one check; there are about twenty.
 const ALPHA: f64 = 1e-4;
@@ -75,6 +76,68 @@ fn a_furnace_is_equally_bright_in_every_pixel_and_colour() {
         for (channel, moments) in channels.iter().enumerate() {
             agrees(&format!("pixel {pixel}, channel {channel}"), moments, 1.0);
         }
+    }
+}
+
+/// The part of the light of a square lamp of radiance 1 and half width 1 at the height 2, that a point of a parallel floor receives
+/// (Lambert): irradiance/π.
+fn received(x: f64, z: f64) -> f64 {
+    // Of the rectangle from above the point to a corner, odd in either side.
+    let corner = |a: f64, b: f64| {
+        let (p, q) = (a.hypot(2.0), b.hypot(2.0));
+        (a / p * (b / p).atan() + b / q * (a / q).atan()) / (2.0 * PI)
+    };
+    let along = |b: f64| corner(1.0 - x, b) - corner(-1.0 - x, b);
+    along(1.0 - z) - along(-1.0 - z)
+}
+
+#[test]
+fn each_strategy_alone_finds_the_light_of_a_lamp_on_a_floor() {
+    let floor = rectangle([-9.0, 0.0, -9.0], [0.0, 0.0, 18.0], [18.0, 0.0, 0.0], diffuse(0.5), 0.0);
+    let lamp = rectangle([-1.0, 2.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0], diffuse(0.0), 1.0);
+    let surfaces = Surfaces::new(vec![floor, lamp]);
+    let lights = Lights { background: Background::dark(), sources: vec![] };
+    let bounds = Bounds::sphere(DVec3::ZERO, 1.0).unwrap();
+    let volume = Volume { medium: EmptySpace, bounds, albedo: 0.0, phase: Isotropic };
+    let world: World<'_, MadeOf<_, _, _, _, Uniform, Regular>> = World::new(&volume, &surfaces, &lights);
+    let camera = Camera::new(dvec3(0.6, 1.0, 0.0), dvec3(0.2, 0.0, 0.3), DVec3::Y, 80.0, [1, 1]).unwrap();
+    let emitters = Emitters::new(&lights, &surfaces, world.enclosing_ball(), camera.origin());
+    // The mean over the pixel by midpoints, whose error is that of their distance squared.
+    const NODES: u32 = 200;
+    let mut expected = 0.0;
+    for (i, j) in (0..NODES).flat_map(|i| (0..NODES).map(move |j| (i, j))) {
+        let within = [i, j].map(|k| (f64::from(k) + 0.5) / f64::from(NODES));
+        let ray = camera.ray([0, 0], within);
+        let point = ray.at(-ray.origin.y / ray.direction.y);
+        expected += 0.5 * received(point.x, point.z) / f64::from(NODES * NODES);
+    }
+
+    let heuristic = Heuristic::Balance;
+    let weigh =
+        Weigh { world, camera: &camera, emitters: &emitters, thickness: Exact, heuristic, light_paths: 1.0 };
+    let walking = Walking::new(Walk::new(Version::NonTerminating, Uniform::new(1.0).unwrap()));
+    let mut integrator = Bidirectional::new(weigh, walking, Regular);
+    let (mut light, mut source) = (Subpath::empty(), Seeded::new(11));
+    // Unweighted by t, and all of them weighted.
+    let mut moments = [Moments::new(); 4];
+    for _ in 0..200_000 {
+        let mut sums = [0.0; 4];
+        integrator.trace_light(&mut light, &mut source);
+        let line = camera.ray([0, 0], [source.next_uniform(), source.next_uniform()]);
+        let mut add = |found: Found<f64>| {
+            sums[found.strategy.eye as usize - 1] += found.value / found.weight;
+            sums[3] += found.value;
+        };
+        integrator.strategies(&line, &light, &mut source, |_, found| add(found));
+        for index in 0..light.steps.len() {
+            if let Some((_, found)) = integrator.splat(&light, index, &mut source) {
+                add(found);
+            }
+        }
+        moments.iter_mut().zip(sums).for_each(|(moments, sum)| moments.push(sum));
+    }
+    for (name, moments) in ["t = 1", "t = 2", "t = 3", "weighted"].into_iter().zip(&moments) {
+        agrees(name, moments, expected);
     }
 }
 
