@@ -2,6 +2,7 @@
 
 pub(crate) mod axis;
 mod chart;
+mod clip;
 pub(crate) mod data;
 pub(crate) mod heat_map;
 mod mark;
