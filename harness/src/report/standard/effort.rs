@@ -47,7 +47,7 @@ impl Effort {
                 point_seconds: 0.025,
                 testable_seconds: 0.6,
                 convergence_seconds: 0.1,
-                short_convergence_seconds: 0.012,
+                short_convergence_seconds: 0.004,
                 most_steps: 4096,
                 resolution: 96,
                 claim_seconds: 0.15,
