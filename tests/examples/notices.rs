@@ -124,13 +124,17 @@ fn main() {
 
     println!("# Notices of third parties\n");
     println!(
-        "Written by `cargo run -p fairflight-tests --example notices` (on {}): do not edit. The program `harness` contains the fonts and\n\
+        "Written by `cargo run -p fairflight-tests --example notices` (on {}): do not edit. The program `harness` contains the fonts, the script and\n\
          crates below. Fairflight itself is licensed under MIT or Apache-2.0, at your choice.\n",
         host.trim()
     );
     let fonts = packages.iter().find(|package| package.name == "dejavu").expect("fonts of plots");
     let licence = fs::read_to_string(fonts.folder.join("assets/dejavu-fonts-ttf-2.37/LICENSE")).unwrap();
     println!("## Fonts of plots: DejaVu 2.37\n\n```text\n{}\n```\n", licence.trim());
+    let charts = packages.iter().find(|package| package.name == "plotly").expect("the script of pages");
+    let script = fs::read_to_string(charts.folder.join("resource/plotly.min.js")).unwrap();
+    let notice: Vec<&str> = script.lines().skip(1).take_while(|line| line.starts_with("* ")).collect();
+    println!("## Script of pages: plotly.js\n\n```text\n{}\n```\n", notice.join("\n").replace("* ", ""));
     println!("## Crates\n\n| crate | version | licence | copyright |\n|---|---|---|---|");
     let mut others = String::new();
     for Package { name, version, licence, folder } in &packages {
