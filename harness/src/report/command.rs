@@ -72,7 +72,7 @@ mod tests {
         name: "made-up",
         about: "",
         takes_volume: false,
-        seconds: [1, 1],
+        takes: ["1 s", "1 s"],
         study: |run| {
             let mut document = run.document("Made up");
             // The seed decides, so that both ends can be seen.

@@ -12,8 +12,8 @@ pub(crate) struct ReportKind {
     pub(crate) about: &'static str,
     /// Whether it takes a volume.
     pub(crate) takes_volume: bool,
-    /// Seconds on two quiet cores, full and quick, as measured.
-    pub(crate) seconds: [u32; 2],
+    /// Times on two quiet cores, full and quick, as measured.
+    pub(crate) takes: [&'static str; 2],
     /// Measures it, on the threads of the current pool.
     pub(crate) study: fn(&Run<'_>) -> Result<Finished, Failure>,
 }
@@ -24,59 +24,55 @@ pub(crate) const REPORTS: [ReportKind; 6] = [
         name: "standard",
         about: "transmittance estimators against their closed forms",
         takes_volume: true,
-        seconds: [30, 10],
+        takes: ["35 s", "9 s"],
         study: standard::study,
     },
     ReportKind {
         name: "particle-tracing",
         about: "multiple scattering over the sampling extinction: three versions, noise, growth, speed",
         takes_volume: false,
-        seconds: [180, 12],
+        takes: ["130 s", "11 s"],
         study: |run| Finished::of(particle_tracing::document(run)?),
     },
     ReportKind {
         name: "single-scattering",
         about: "a point light in a medium: all methods at equal look-ups, speed against error",
         takes_volume: false,
-        seconds: [83, 6],
+        takes: ["80 s", "4 s"],
         study: |run| Finished::of(single_scattering::document(run)?),
     },
     ReportKind {
         name: "free-flight",
         about: "distance samplers by their law, algorithm 2 from homogeneous to inhomogeneous, two wavelengths",
         takes_volume: false,
-        seconds: [108, 12],
+        takes: ["108 s", "15 s"],
         study: |run| Finished::of(free_flight::document(run)?),
     },
     ReportKind {
         name: "vpl",
         about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
         takes_volume: false,
-        seconds: [1200, 40],
+        takes: ["> 4 min", "24 s"],
         study: |run| Finished::of(virtual_lights::document(run)?),
     },
     ReportKind {
         name: "estimators",
         about: "all estimators of transmittance: the canonical plane, random rays, speed against error, which to use",
         takes_volume: true,
-        seconds: [400, 70],
+        takes: ["5.5 min", "47 s"],
         study: |run| Finished::of(estimators::document(run)?),
     },
 ];
 
 /// The reports with their times, for `harness report --help`.
 pub(crate) fn times() -> String {
-    let time = |seconds: u32| match seconds {
-        0..120 => format!("{seconds} s"),
-        _ => format!("{} min", (f64::from(seconds) / 60.0).round()),
-    };
     let line = |kind: &ReportKind| {
-        let [full, quick] = kind.seconds.map(time);
-        format!("  {:<18} {full:>7} {quick:>11}   {}\n", kind.name, kind.about)
+        let [full, quick] = kind.takes;
+        format!("  {:<18} {full:>7} {quick:>13}   {}\n", kind.name, kind.about)
     };
     let lines: String = REPORTS.iter().map(line).collect();
     format!(
-        "Reports, and how long they take on two quiet cores:\n\n  {:<18} {:>7} {:>11}\n{lines}",
+        "Reports, and how long they take on two quiet cores:\n\n  {:<18} {:>7} {:>13}\n{lines}",
         "", "full", "with --quick"
     )
 }
