@@ -19,7 +19,7 @@ const ALPHA: f64 = 1e-4;
 /// Path tracer samples for one of bidirectional path tracing: they are cheaper, and have more variance.
 const TRACED: u32 = 4;
 
-/// How a scene is estimated.
+/// Estimator of the radiance of a scene.
 #[derive(Clone)]
 struct How<K, T> {
     heuristic: Heuristic,

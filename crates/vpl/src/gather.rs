@@ -32,7 +32,7 @@ impl Term {
 /// Virtual point lights that a vertex is connected with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Connected {
-    /// All virtual point lights.
+    /// Virtual point lights of a set.
     All,
     /// One virtual point light, by its index.
     One(usize),

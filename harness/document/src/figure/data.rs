@@ -53,7 +53,7 @@ fn without_empty_headings(chart: &Chart, mut table: Table) -> Table {
     table
 }
 
-/// All cells of a heat map.
+/// Table of a heat map: a row for each cell.
 pub(crate) fn of_heat_map(map: &HeatMap) -> Table {
     let name = |k: &Option<usize>| match &map.content {
         Content::Names { names, .. } => k.map_or(Cell::Empty, |k| Cell::text(&names[k])),

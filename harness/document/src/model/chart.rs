@@ -59,7 +59,7 @@ impl Chart {
         Self { caption: caption.into(), ..self }
     }
 
-    /// All curves of all panels.
+    /// Iterates over the curves of every panel.
     pub fn curves(&self) -> impl Iterator<Item = &Curve> {
         self.panels.iter().flat_map(|panel| &panel.curves)
     }

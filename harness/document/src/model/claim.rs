@@ -32,7 +32,7 @@ impl Claim {
     }
 }
 
-/// Whether a claim held.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClaimVerdict {
@@ -47,7 +47,7 @@ pub enum ClaimVerdict {
 }
 
 impl ClaimVerdict {
-    /// All verdicts.
+    /// Verdicts, from best to worst.
     pub(crate) const ALL: [Self; 4] = [Self::Holds, Self::HoldsUnder, Self::DoesNotHold, Self::NotTestable];
 
     /// The verdict of a criterion that is met or not.

@@ -28,7 +28,7 @@ enum Task<'a> {
     March { offset: Offset, steps: u32 },
 }
 
-/// All curves of one subject.
+/// Curves of one subject.
 pub(super) fn curves(
     run: &Run<'_>,
     subject: &Subject,

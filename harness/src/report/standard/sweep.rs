@@ -20,7 +20,7 @@ use std::f64::consts::LN_10;
 /// The sweep goes from 1/8 of the majorant to 8 times the majorant.
 const LEAST_FACTOR: f64 = 0.125;
 
-/// All curves of one subject.
+/// Curves of one subject.
 pub(super) fn curves(
     run: &Run<'_>,
     subject: &Subject,

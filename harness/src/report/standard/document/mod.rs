@@ -40,7 +40,7 @@ fn section(medium: &MediumReport) -> Section {
         .with(tables::optima(medium))
 }
 
-/// All other figures, folded.
+/// Figures of detail, in a section that the page folds.
 fn details(report: &Report, medium: &MediumReport) -> Section {
     let studies: Vec<_> = report.images.iter().filter(|study| study.medium == medium.id).collect();
     let title = format!("{}: albedos, look-ups, the ray, images", medium.title);
