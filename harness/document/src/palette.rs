@@ -78,10 +78,25 @@ const INK: Rgb = (0x1D, 0x21, 0x26);
 /// The looks of the labels of a document.
 pub(crate) struct Looks<'a> {
     known: Vec<(Role, &'a str, Look)>,
+    numbers: Vec<(&'a str, usize)>,
+}
+
+/// Labels of methods that meet in a figure.
+fn labels_of(block: &Block) -> Vec<&str> {
+    match block {
+        Block::Chart(chart) => {
+            chart.curves().filter(|it| it.role == Role::Method).map(|it| &*it.label).collect()
+        }
+        Block::HeatMap(map) => match &map.content {
+            Content::Names { names, .. } => names.iter().map(|name| &**name).collect(),
+            Content::Values { .. } => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
 }
 
 impl<'a> Looks<'a> {
-    /// Labels that the document knows have their look; all others get those that are left, in the order in which they first appear.
+    /// Labels that the document knows have their look; all others get the first that no label beside them in a figure has.
     pub(crate) fn of(document: &'a Document) -> Self {
         let mut labels: Vec<(Role, &str)> = Vec::new();
         for block in document.blocks() {
@@ -95,16 +110,24 @@ impl<'a> Looks<'a> {
             }
         }
         let fixed = |label: &str| document.looks.iter().find(|(name, _)| name == label).map(|known| known.1);
-        let taken: Vec<usize> = labels.iter().filter_map(|(_, label)| fixed(label)).collect();
-        let mut free = (0..).filter(|number| !taken.contains(number));
+        // Labels that meet in a figure differ; those that never do may share a look, so that colours do not run out.
+        let figures: Vec<Vec<&str>> = document.blocks().map(labels_of).collect();
         let mut references = 0;
-        let mut looks = Self { known: Vec::new() };
+        let mut looks = Self { known: Vec::new(), numbers: Vec::new() };
         for (role, label) in labels {
             if looks.find(role, label).is_some() {
                 continue;
             }
             let look = match role {
-                Role::Method => look(fixed(label).or_else(|| free.next()).unwrap_or_default()),
+                Role::Method => {
+                    let met = figures.iter().filter(|figure| figure.contains(&label)).flatten();
+                    let known = |other: &&str| fixed(other).or_else(|| looks.number(other));
+                    let taken: Vec<usize> = met.filter_map(known).collect();
+                    let free = (0..).find(|number| !taken.contains(number));
+                    let number = fixed(label).or(free).unwrap_or_default();
+                    looks.numbers.push((label, number));
+                    look(number)
+                }
                 Role::Reference => {
                     references += 1;
                     let dash = DASHES[(references - 1) % DASHES.len()];
@@ -118,6 +141,10 @@ impl<'a> Looks<'a> {
 
     fn find(&self, role: Role, label: &str) -> Option<Look> {
         self.known.iter().find(|known| known.0 == role && known.1 == label).map(|known| known.2)
+    }
+
+    fn number(&self, label: &str) -> Option<usize> {
+        self.numbers.iter().find(|known| known.0 == label).map(|known| known.1)
     }
 
     /// The look of a label.
