@@ -1,7 +1,7 @@
 //! Particle tracing from the camera: importons (szirmay-kalos-2017 section 4.1).
 
-use crate::{End, Integrator, Ratio, RayTransmittance, SamplingExtinction, Walk, arriving};
-use fairflight_media::{Line, Medium, PhaseFunction};
+use crate::{End, Integrator, Ratio, RayTransmittance, SamplingExtinction, ScatteringEvent, Walk, arriving};
+use fairflight_media::{Line, Medium, PhaseFunction, Ray};
 use fairflight_scene::{Lights, Spectrum, Volume};
 use fairflight_sources::UniformSource;
 
@@ -32,6 +32,48 @@ impl<'s, M, P, C, R> ParticleTracer<'s, M, P, C, R> {
     pub fn truncated(&self) -> u64 {
         self.truncated
     }
+
+    pub(crate) fn volume(&self) -> &'s Volume<M, P, C> {
+        self.volume
+    }
+
+    pub(crate) fn lights(&self) -> &'s Lights<C> {
+        self.lights
+    }
+}
+
+impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> ParticleTracer<'_, M, P, C, R> {
+    /// Adds the light of all sources that is scattered at an event towards where its importon came from.
+    #[inline]
+    pub(crate) fn connect(
+        &self,
+        event: &ScatteringEvent<C>,
+        radiance: &mut C,
+        source: &mut impl UniformSource,
+    ) {
+        for light in &self.lights.sources {
+            let Some(connection) = light.connect(event.point) else { continue };
+            let shadow = &mut Ratio(self.walk.sampling());
+            let arriving = arriving(self.volume, event.point, &connection, shadow, source);
+            let phase = self.volume.phase.eval(event.incident.dot(connection.towards));
+            *radiance += event.energy * arriving * phase;
+        }
+    }
+
+    /// Adds all that one importon meets from the start of `ray` on.
+    #[inline]
+    pub(crate) fn follow(&mut self, ray: Ray<&M>, radiance: &mut C, source: &mut impl UniformSource) {
+        let end = self
+            .walk
+            .simulate(self.volume, ray, source, |event, source| self.connect(&event, radiance, source));
+        match end {
+            End::Escaped { direction, energy } => {
+                *radiance += energy * self.lights.background.radiance(direction);
+            }
+            End::Absorbed => {}
+            End::Truncated => self.truncated += 1,
+        }
+    }
 }
 
 impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> Integrator<C>
@@ -39,25 +81,11 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> Integrator
 {
     #[inline]
     fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
-        let Self { volume, lights, walk, truncated } = self;
-        let Some(ray) = volume.enter(line, None) else {
-            return lights.background.radiance(line.direction);
+        let Some(ray) = self.volume.enter(line, None) else {
+            return self.lights.background.radiance(line.direction);
         };
         let mut radiance = C::ZERO;
-        let end = walk.simulate(volume, ray, source, |event, source| {
-            for light in &lights.sources {
-                let Some(connection) = light.connect(event.point) else { continue };
-                let shadow = &mut Ratio(walk.sampling());
-                let arriving = arriving(volume, event.point, &connection, shadow, source);
-                let phase = volume.phase.eval(event.incident.dot(connection.towards));
-                radiance += event.energy * arriving * phase;
-            }
-        });
-        match end {
-            End::Escaped { direction, energy } => radiance += energy * lights.background.radiance(direction),
-            End::Absorbed => {}
-            End::Truncated => *truncated += 1,
-        }
+        self.follow(ray, &mut radiance, source);
         radiance
     }
 }
