@@ -19,6 +19,7 @@
 //! ```
 
 mod checks;
+mod estimators;
 mod function;
 mod hard_cases;
 mod twins;

@@ -1,8 +1,8 @@
 //! Checks by exact algebra, and the variance where it is tested for sure.
 
-use super::estimators::add;
 use super::specimen::{Specimen, SpecimenField};
 use super::{Check, Law};
+use crate::estimators::add;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version, Woodcock};
 use fairflight_laws::{CheckResult, collision};
 use fairflight_media::{Constant, Vacuum};

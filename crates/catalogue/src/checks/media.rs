@@ -1,9 +1,9 @@
 //! The media: from one number to noise, so that a mistake has somewhere to show.
 
-use super::Check;
-use super::estimators::{jittered, of_any_sign, of_positive};
-use super::specimen::Specimen;
-use super::{exact, single_particle};
+use super::specimen::{Specimen, SpecimenField};
+use super::{Check, exact};
+use crate::estimators::ray_marching::jittered;
+use crate::estimators::{double_particle, line_integral, ray_marching, single_particle, woodcock};
 use fairflight_laws::DenseLattice;
 use fairflight_media::{
     AnalyticCosine, Bounds, Clip, Constant, ExpressionProfile, FieldError, Medium, Perlin, PerlinParameters,
@@ -13,7 +13,7 @@ use glam::{DAffine3, DVec3, dvec3};
 use std::sync::Arc;
 
 /// A medium that this file gets wrong would be a bug here, not a finding: its constructors are told so.
-pub(super) const LAWFUL: &str = "the catalogue's media are lawful";
+pub(crate) const LAWFUL: &str = "the catalogue's media are lawful";
 
 /// Flights per line integral. Its theory costs an integral over the shift for each, hence fewer where cells are many.
 const SPLITS: [u32; 3] = [1, 4, 16];
@@ -86,14 +86,33 @@ pub(super) fn checks() -> Vec<Check> {
     checks
 }
 
+/// The estimators that need 0 ≤ σ_t ≤ the field's own majorant, the line integral with each of `splits`.
+fn of_positive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, splits: &[u32]) -> Vec<Check> {
+    let mut checks = vec![woodcock::on(specimen)];
+    checks.extend(line_integral::on(specimen, splits));
+    checks
+}
+
+/// The estimators that admit values of any sign.
+fn of_any_sign<F: SpecimenField>(
+    specimen: &Arc<Specimen<F>>,
+    majorant: f64,
+    mean: f64,
+    explorers: usize,
+) -> Vec<Check> {
+    let mut checks = double_particle::on(specimen, majorant, mean, explorers);
+    checks.push(ray_marching::fixed(specimen));
+    checks
+}
+
 /// szirmay-kalos-2017 eq. 21 in its sphere.
-pub(super) fn analytic_cosine(origin: DVec3, direction: DVec3) -> Ray<Arc<AnalyticCosine>> {
+pub(crate) fn analytic_cosine(origin: DVec3, direction: DVec3) -> Ray<Arc<AnalyticCosine>> {
     let medium = Arc::new(AnalyticCosine::new(1.0).expect(LAWFUL));
     ray(medium, AnalyticCosine::default_bounds(), origin, direction).expect(LAWFUL)
 }
 
 /// Six voxels a side, values that follow no pattern.
-pub(super) fn voxels() -> Ray<Arc<Voxels<DenseLattice>>> {
+pub(crate) fn voxels() -> Ray<Arc<Voxels<DenseLattice>>> {
     let lattice = DenseLattice::of([6, 6, 6], |[x, y, z]| 0.1 * ((7 * x + 5 * y + 11 * z) % 6 + 1) as f64);
     let medium = Arc::new(Voxels::new(lattice, DAffine3::IDENTITY, 1.0).expect(LAWFUL));
     let bounds = Bounds::aligned_box(DVec3::ZERO, DVec3::splat(5.0)).expect(LAWFUL);

@@ -1,27 +1,21 @@
 //! Every check by name: what `verify` runs.
 
-mod cells;
-mod combs;
-mod estimators;
 mod exact;
 mod exactly;
 mod freeflight;
-mod hybrid;
 mod media;
 pub(crate) mod paths;
 mod phase;
 mod points;
-mod regular;
-mod series;
-mod single_particle;
 mod specimen;
 mod spectral;
 mod vpl;
 
-pub(crate) use regular::FirstEstimate;
+pub(crate) use media::{LAWFUL, analytic_cosine, voxels};
+pub(crate) use specimen::{Specimen, SpecimenField};
 
 use crate::function::{Function, joined};
-use crate::{hard_cases, twins};
+use crate::{estimators, hard_cases, twins};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_sources::named_seed;
 use fairflight_stats::sidak_level;
@@ -131,7 +125,7 @@ pub struct Check {
 }
 
 impl Check {
-    fn new(
+    pub(crate) fn new(
         id: impl Into<String>,
         law: Law,
         estimator: impl Into<String>,
@@ -151,7 +145,7 @@ impl Check {
     }
 
     /// The same, which also draws from these kinds.
-    fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
+    pub(crate) fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
         self.kinds.extend(kinds);
         self
     }
@@ -189,8 +183,7 @@ impl Check {
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
     let mut checks = joined!(
-        checks of exact, phase, media, regular, series, combs, cells, hybrid, freeflight, spectral,
-        points, paths, vpl, exactly
+        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, exactly
     );
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());

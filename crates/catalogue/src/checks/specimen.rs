@@ -17,20 +17,20 @@ use fairflight_transmittance::{
 use std::sync::OnceLock;
 
 /// Knowledge that a profile must have to be a specimen; a bound may be infinite.
-pub(super) trait SpecimenField:
+pub(crate) trait SpecimenField:
     Extinction + Breakpoints + Majorant + Minorant + Clone + Send + Sync + 'static
 {
 }
 impl<F: Extinction + Breakpoints + Majorant + Minorant + Clone + Send + Sync + 'static> SpecimenField for F {}
 
 /// A named profile with its quadrature, which is sampled once for all checks.
-pub(super) struct Specimen<F> {
-    pub(super) name: &'static str,
-    pub(super) field: F,
+pub(crate) struct Specimen<F> {
+    pub(crate) name: &'static str,
+    pub(crate) field: F,
     /// Divides the samples where look-ups are expensive.
-    pub(super) frugality: u64,
+    pub(crate) frugality: u64,
     truth: fn(&F) -> Truth,
-    pub(super) tolerance: Tolerance,
+    pub(crate) tolerance: Tolerance,
     quadrature: OnceLock<(RayQuadrature<F>, Truth)>,
 }
 
@@ -39,14 +39,14 @@ where
     Certified<F>: SpecimenField,
 {
     /// A profile whose optical thickness has a certificate; other integrals are to `tolerance`.
-    pub(super) fn certified(name: &'static str, field: F, tolerance: Tolerance) -> Self {
+    pub(crate) fn certified(name: &'static str, field: F, tolerance: Tolerance) -> Self {
         Self::known(name, Certified::new(field), |field| Truth::certified(field.certificate()), tolerance)
     }
 }
 
 impl<F: SpecimenField> Specimen<F> {
     /// A profile of which the optical thickness has a closed form.
-    pub(super) fn closed(name: &'static str, field: F) -> Self
+    pub(crate) fn closed(name: &'static str, field: F) -> Self
     where
         F: OpticalThickness,
     {
@@ -54,7 +54,7 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// The same, its closed form put aside: the optical thickness is found by quadrature.
-    pub(super) fn integrated(name: &'static str, field: F, tolerance: Tolerance) -> Self {
+    pub(crate) fn integrated(name: &'static str, field: F, tolerance: Tolerance) -> Self {
         let truth = |field: &F| Truth::quadrature(&mut RayQuadrature::new(field, &[]), Tolerance::TIGHT);
         Self::known(name, field, truth, tolerance)
     }
@@ -63,7 +63,7 @@ impl<F: SpecimenField> Specimen<F> {
         Self { name, field, frugality: 1, truth, tolerance, quadrature: OnceLock::new() }
     }
 
-    pub(super) fn prepared(&self) -> (RayQuadrature<F>, Truth) {
+    pub(crate) fn prepared(&self) -> (RayQuadrature<F>, Truth) {
         let (quadrature, truth) = self.quadrature.get_or_init(|| {
             let truth = (self.truth)(&self.field);
             (RayQuadrature::new(self.field.clone(), &[]), truth)
@@ -72,7 +72,7 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// The law of `estimator`, whose own breakpoints are `also`.
-    pub(super) fn examine<'f, E: ClosedForm<F>>(
+    pub(crate) fn examine<'f, E: ClosedForm<F>>(
         &'f self,
         estimator: &E,
         also: &[f64],
@@ -89,7 +89,7 @@ impl<F: SpecimenField> Specimen<F> {
     /// Judges as [`Self::examine`], with a law of look-ups that is an integral along the field.
     ///
     /// N is at least what the closed moments ask for, so that no seed makes the check untestable.
-    pub(super) fn examine_with_lookups<'f, E: ClosedForm<F>>(
+    pub(crate) fn examine_with_lookups<'f, E: ClosedForm<F>>(
         &'f self,
         estimator: &E,
         also: &[f64],
@@ -109,7 +109,7 @@ impl<F: SpecimenField> Specimen<F> {
         CheckResult::of_evidence(&check(&self.field, estimator, &expected, expected.sufficient(run)))
     }
 
-    pub(super) fn woodcock(&self, run: Run) -> CheckResult {
+    pub(crate) fn woodcock(&self, run: Run) -> CheckResult {
         self.examine_with_lookups(
             &Woodcock,
             &[],
@@ -120,13 +120,13 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// The look-ups of a Woodcock flight in the field's own majorant: one at each tentative collision, up to the one that is accepted.
-    pub(super) fn of_flight(&self, quadrature: &mut RayQuadrature<F>) -> LookupLaw {
+    pub(crate) fn of_flight(&self, quadrature: &mut RayQuadrature<F>) -> LookupLaw {
         let majorant = self.field.majorant();
         let rates = |_: f64, sigma_t: f64| [sigma_t, majorant - sigma_t];
         LookupLaw::Moments(lookups_of_a_walk(quadrature, self.tolerance, &rates))
     }
 
-    pub(super) fn line_integral(&self, splits: u32, run: Run) -> CheckResult {
+    pub(crate) fn line_integral(&self, splits: u32, run: Run) -> CheckResult {
         let Ok(estimator) = LineIntegral::new(splits) else {
             return CheckResult::exact(false, "refused: no splits");
         };
@@ -142,14 +142,14 @@ impl<F: SpecimenField> Specimen<F> {
         self.examine_with_lookups(&estimator, &[], scores, lookups, run)
     }
 
-    pub(super) fn ray_marching(&self, estimator: &RayMarching, run: Run) -> CheckResult {
+    pub(crate) fn ray_marching(&self, estimator: &RayMarching, run: Run) -> CheckResult {
         let range = Interval::bounds_of(&self.field);
         let scores = |unit| scores::ray_marching(range, self.field.length(), unit);
         self.baseline(estimator, self.examine(estimator, &[], scores, LookupLaw::Fixed, run))
     }
 
     /// The law of a biased `estimator`: the expectation that its theory states. Its bias is told.
-    pub(super) fn baseline<E: ClosedForm<F>>(&self, estimator: &E, result: CheckResult) -> CheckResult {
+    pub(crate) fn baseline<E: ClosedForm<F>>(&self, estimator: &E, result: CheckResult) -> CheckResult {
         let (mut quadrature, truth) = self.prepared();
         let theory = estimator.theory(&mut quadrature, truth.optical_thickness, self.tolerance);
         let bias = theory.relative_mean - 1.0;
@@ -159,7 +159,7 @@ impl<F: SpecimenField> Specimen<F> {
         }
     }
 
-    pub(super) fn tracking<M, C, R>(&self, tracking: &Tracking<M, C, R>, run: Run) -> CheckResult
+    pub(crate) fn tracking<M, C, R>(&self, tracking: &Tracking<M, C, R>, run: Run) -> CheckResult
     where
         M: CollisionModel,
         C: OpticalThickness + Breakpoints + Ranged,

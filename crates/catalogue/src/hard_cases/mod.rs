@@ -16,9 +16,9 @@ mod signed;
 mod spectral;
 mod thickness;
 mod vacuum;
-mod variates;
 mod voxel_faces;
 
+pub(crate) use by_kind::{Found, Profile, Subject, WATCHED, affordable};
 pub use by_kind::{ROWS, SAMPLERS, spared};
 
 use crate::function::{Function, joined};
@@ -163,7 +163,7 @@ impl HardCase {
 #[must_use]
 pub fn hard_cases() -> Vec<HardCase> {
     let mut cases = joined!(
-        cases of vacuum, signed, collisions, thickness, voxel_faces, far, variates, refusals,
+        cases of vacuum, signed, collisions, thickness, voxel_faces, far, refusals,
         heavy_tails, spectral, anisotropy, connections
     );
     let table = by_kind::cases(&cases).into_iter().map(|case| HardCase { of_table: true, ..case });

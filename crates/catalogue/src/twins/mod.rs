@@ -3,25 +3,17 @@
 //! A law that nothing can break tests nothing. Each statistical twin states its profile, its N and the |z| that it shows
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
-mod cells;
-mod collision_weights;
-mod combs;
-mod control;
 mod exactly;
 mod freeflight;
-mod line_integral;
-mod logarithm;
-mod majorant;
+mod jittered_flight;
 mod paths;
 mod phase;
 mod points;
-mod sampling;
-mod series;
 mod spectral;
-mod trial;
-mod variance;
+pub(crate) mod trial;
 mod vpl;
 
+use crate::estimators;
 use crate::function::{Function, joined};
 use fairflight_laws::Run;
 use fairflight_laws::freeflight::{FlightEvidence, FlightRefusal};
@@ -42,7 +34,7 @@ pub struct Rejection {
 
 impl Rejection {
     /// An exact assertion.
-    fn exact(rejected: bool, reason: impl Into<String>) -> Self {
+    pub(crate) fn exact(rejected: bool, reason: impl Into<String>) -> Self {
         Self { rejected, mean_z: None, variance_z: None, reason: reason.into() }
     }
 
@@ -107,7 +99,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    fn new(
+    pub(crate) fn new(
         of: &'static str,
         id: &'static str,
         mistake: &'static str,
@@ -128,7 +120,7 @@ impl Twin {
     }
 
     /// The same, which the law of these kinds rejects.
-    fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
+    pub(crate) fn about(mut self, kinds: impl IntoIterator<Item = &'static str>) -> Self {
         self.kinds.extend(kinds);
         self
     }
@@ -144,7 +136,6 @@ impl Twin {
 #[must_use]
 pub fn twins() -> Vec<Twin> {
     joined!(
-        twins of collision_weights, cells, control, exactly, freeflight, spectral, points, majorant,
-        sampling, line_integral, series, combs, logarithm, variance, phase, paths, vpl
+        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, vpl
     )
 }

@@ -6,15 +6,15 @@ use fairflight_laws::transmittance::check_estimates;
 use fairflight_laws::{Expectation, Run, Truth, Unit};
 use fairflight_media::OpticalThickness;
 use fairflight_stats::Scores;
-pub(super) use fairflight_transmittance::theory_on;
+pub(crate) use fairflight_transmittance::theory_on;
 use fairflight_transmittance::{Theory, TransmittanceEstimator};
 
 /// A profile or parameter of a twin that is not lawful would be a bug of its own.
-pub(super) const LAWFUL: &str = "the twins' profiles are lawful";
+pub(crate) const LAWFUL: &str = "the twins' profiles are lawful";
 
 /// Judges `twin` by the law and the `theory` of its right sibling. Nothing is said of its scores, so that only the numbers
 /// give it away.
-pub(super) fn judged<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
+pub(crate) fn judged<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
     field: &F,
     twin: &E,
     theory: Theory,
@@ -24,7 +24,7 @@ pub(super) fn judged<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f 
 }
 
 /// Judges as [`judged`], with the scores that the estimator can have for a transmittance.
-pub(super) fn judged_with_scores<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
+pub(crate) fn judged_with_scores<F: OpticalThickness, E: for<'f> TransmittanceEstimator<&'f F>>(
     field: &F,
     twin: &E,
     (theory, scores): (Theory, fn(Unit) -> Scores),

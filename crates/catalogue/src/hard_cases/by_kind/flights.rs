@@ -1,9 +1,9 @@
 //! Every sampler of free flights along a line by its kind.
 
+use super::ends::is_lawful;
 use super::profile::Profile;
 use super::{Found, Subject};
 use crate::hard_cases::LAWFUL;
-use crate::hard_cases::variates::is_lawful;
 use fairflight_collision::Version;
 use fairflight_freeflight::spectral::DecompositionTracking;
 use fairflight_freeflight::{
@@ -44,13 +44,11 @@ pub(super) fn subjects() -> Vec<Subject> {
         flight!("woodcock_flight", "woodcock", above: false, below: false, Weights::One, |profile| {
             Woodcock::new(profile.rates(1.0))
         }),
-        Subject {
-            // Its law of look-ups is one of each stratum.
-            is_tried: |profile| profile.depth() <= 3e3,
-            ..flight!("jittered_flight", "jittered", above: false, below: false, Weights::One, |_| {
-                JitteredFlight::new(0.5).expect(LAWFUL)
-            })
-        },
+        flight!("jittered_flight", "jittered", above: false, below: false, Weights::One, |_| {
+            JitteredFlight::new(0.5).expect(LAWFUL)
+        })
+        // Its law of look-ups is one of each stratum.
+        .tried_where(|profile| profile.depth() <= 3e3),
         flight!("decomposition_tracking", "decomposition", above: true, below: true, Weights::Any, |profile| {
             DecompositionTracking::new(Version::Adaptive, profile.rates(0.0), profile.rates(1.0))
         }),

@@ -1,6 +1,6 @@
 //! Every integrator by its kind, in a ball of haze before a background of 1.
 
-use crate::hard_cases::variates::End;
+use super::ends::End;
 use crate::hard_cases::{HardCase, LAWFUL, Outcome, vacuum};
 use fairflight_collision::Version;
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};

@@ -2,7 +2,7 @@
 //!
 //! A row that has a case of its own for a kind is met by that. All others are made here, from what each kind says of itself.
 
-mod estimators;
+mod ends;
 mod flights;
 mod integrators;
 mod profile;
@@ -10,28 +10,28 @@ mod rows;
 mod spared;
 mod spectral;
 
-use super::variates::End;
 use super::{HardCase, Outcome};
+use ends::{End, at_the_ends};
 use fairflight_laws::{CheckResult, Run};
-use fairflight_sources::{LARGEST_VARIATE, derive_seed};
+use fairflight_sources::derive_seed;
 use rows::{Row, Setting};
 use std::collections::BTreeSet;
 
-pub(super) use profile::Profile;
+pub(crate) use profile::Profile;
 pub use spared::{ROWS, SAMPLERS, spared};
 
 /// The result of one subject on one profile.
-struct Found {
+pub(crate) struct Found {
     /// The judgement of the law.
-    result: CheckResult,
+    pub(crate) result: CheckResult,
     /// The refusal, if it is one.
-    refused: Option<String>,
+    pub(crate) refused: Option<String>,
 }
 
 /// An estimator or a sampler of free flights, as the rows need it.
-struct Subject {
+pub(crate) struct Subject {
     /// Kind of the estimator or sampler.
-    kind: &'static str,
+    pub(crate) kind: &'static str,
     /// Name among those of the same kind.
     name: &'static str,
     /// True if it admits σ_t above the majorant that a profile claims.
@@ -50,7 +50,7 @@ struct Subject {
 
 impl Subject {
     /// A subject that is tried on all profiles.
-    fn new(
+    pub(crate) fn new(
         (kind, name): (&'static str, &'static str),
         (above, below): (bool, bool),
         examine: fn(&Profile, Run) -> Found,
@@ -58,6 +58,16 @@ impl Subject {
         draw: fn(&Profile, &mut End) -> bool,
     ) -> Self {
         Self { kind, name, above, below, is_tried: |_| true, examine, watch, draw }
+    }
+
+    /// The same, of this kind.
+    pub(crate) fn of_kind(self, kind: &'static str) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// The same, tried on these profiles only.
+    pub(crate) fn tried_where(self, is_tried: fn(&Profile) -> bool) -> Self {
+        Self { is_tried, ..self }
     }
 
     /// True if the only right answer is a refusal.
@@ -72,19 +82,19 @@ impl Subject {
 }
 
 /// N, seed and level of a run that is to be refused, and judged by nothing.
-const WATCHED: Run = Run { samples: 2_000, seed: 15, alpha: 1e-6 };
+pub(crate) const WATCHED: Run = Run { samples: 2_000, seed: 15, alpha: 1e-6 };
 
 /// Look-ups on one profile: an answer is to be right, not precise.
 const BUDGET: f64 = 4e5;
 
 /// Number of samples that the budget allows, where one costs so many look-ups; 2 at least, `samples` at most.
-fn affordable(samples: u64, cost: f64) -> u64 {
+pub(crate) fn affordable(samples: u64, cost: f64) -> u64 {
     samples.min((BUDGET / cost.max(1.0)) as u64).max(2)
 }
 
 /// Estimators and samplers of every kind.
 fn subjects() -> Vec<Subject> {
-    let mut all = estimators::subjects();
+    let mut all = crate::estimators::subjects();
     all.extend(flights::subjects());
     all.extend(spectral::subjects());
     all
@@ -105,29 +115,6 @@ pub(super) fn cases(own: &[HardCase]) -> Vec<HardCase> {
     cases.extend(kinds.into_iter().map(at_the_ends));
     cases.extend(integrators::cases(own));
     cases
-}
-
-/// Row 14 of one kind: the variates at either end of the lattice, and then their middle.
-fn at_the_ends(kind: &'static str) -> HardCase {
-    let title = format!("the uniform variates 0 and 1 - 2^-53: {kind}");
-    let evaluate = move || {
-        let profiles = [
-            Profile::constant(0.7, 3.0, (0.0, 1.0)),
-            // Empty at first, and in the middle.
-            Profile::steps(&[0.0, 1.0, 3.0, 4.0, 5.0], &[0.0, 0.5, 0.0, 0.2]),
-        ];
-        for subject in subjects().into_iter().filter(|subject| subject.kind == kind) {
-            for (profile, variate) in
-                profiles.iter().flat_map(|profile| [(profile, 0.0), (profile, LARGEST_VARIATE)])
-            {
-                if !(1..5).all(|left| (subject.draw)(profile, &mut End { variate, left })) {
-                    return Outcome::said(false, format!("{}, variates of {variate}", subject.name));
-                }
-            }
-        }
-        Outcome::said(true, "finite, and a collision only where matter is")
-    };
-    HardCase::deterministic(14, title, kind, "finite", "finite", evaluate).about([kind])
 }
 
 /// The case of one kind in one row.

@@ -20,7 +20,7 @@ enum Along {
 
 /// σ_t along a ray, with the bounds that are claimed for it, one for all and in cells.
 #[derive(Clone, Debug)]
-pub(in crate::hard_cases) struct Profile {
+pub(crate) struct Profile {
     along: Along,
     cells: Vec<BoundCell>,
     bounds: (f64, f64),
@@ -35,14 +35,14 @@ impl Profile {
     }
 
     /// A constant σ_t in one cell of these bounds; no cell where the length is 0.
-    pub(super) fn constant(sigma_t: f64, length: f64, (minorant, majorant): (f64, f64)) -> Self {
+    pub(crate) fn constant(sigma_t: f64, length: f64, (minorant, majorant): (f64, f64)) -> Self {
         let cell = BoundCell { to: length, minorant, majorant };
         let cells = if length > 0.0 { vec![cell] } else { Vec::new() };
         Self::new(Along::Constant(Constant::new(sigma_t, length).expect(LAWFUL)), cells)
     }
 
     /// Steps, each of which is a cell from 0 to its value; a negative one from that to its magnitude.
-    pub(super) fn steps(edges: &[f64], values: &[f64]) -> Self {
+    pub(crate) fn steps(edges: &[f64], values: &[f64]) -> Self {
         let cell =
             |(&to, &value): (&f64, &f64)| BoundCell { to, minorant: value.min(0.0), majorant: value.abs() };
         let cells = edges[1..].iter().zip(values).map(cell).collect();
@@ -51,22 +51,22 @@ impl Profile {
     }
 
     /// A ray through voxels, in the cells of a grid.
-    pub(in crate::hard_cases) fn voxels(ray: Ray<Voxels<DenseLattice>>, cells: Vec<BoundCell>) -> Self {
+    pub(crate) fn voxels(ray: Ray<Voxels<DenseLattice>>, cells: Vec<BoundCell>) -> Self {
         Self::new(Along::Voxels(Arc::new(ray)), cells)
     }
 
     /// Claims a majorant of 1, and returns `value` on its second half.
-    pub(super) fn faulty(value: f64) -> Self {
+    pub(crate) fn faulty(value: f64) -> Self {
         Self::new(Along::Faulty(value), vec![BoundCell { to: 2.0, minorant: 0.0, majorant: 1.0 }])
     }
 
     /// The optical thickness of its one majorant \[1\].
-    pub(super) fn depth(&self) -> f64 {
+    pub(crate) fn depth(&self) -> f64 {
         self.majorant() * self.length()
     }
 
     /// The optical thickness of the majorants of its cells \[1\].
-    pub(super) fn depth_in_cells(&self) -> f64 {
+    pub(crate) fn depth_in_cells(&self) -> f64 {
         self.rates(1.0).optical_thickness(0.0, self.length())
     }
 
@@ -77,13 +77,13 @@ impl Profile {
 
     /// Distances at which a law of what is drawn is not smooth: ends of cells, and the first mean free paths of the majorant, beyond which a dense
     /// profile lets nothing through.
-    pub(super) fn borders(&self) -> Vec<f64> {
+    pub(crate) fn borders(&self) -> Vec<f64> {
         let paths = (0..12).map(|k| 3.0_f64.powi(k) / self.majorant());
         self.ends().chain(paths.filter(|&s| s < self.length())).collect()
     }
 
     /// True if σ_t lies between 0 and the majorant in the middle of each cell.
-    pub(super) fn keeps_its_bounds(&self) -> bool {
+    pub(crate) fn keeps_its_bounds(&self) -> bool {
         let mut from = 0.0;
         self.cells.iter().all(|cell| {
             let middle = 0.5 * (std::mem::replace(&mut from, cell.to) + cell.to);
@@ -92,7 +92,7 @@ impl Profile {
     }
 
     /// A sampling extinction: `factor` times the majorant of each cell.
-    pub(super) fn rates(&self, factor: f64) -> Self {
+    pub(crate) fn rates(&self, factor: f64) -> Self {
         let values: Vec<f64> = self.cells.iter().map(|cell| factor * cell.majorant).collect();
         if values.is_empty() {
             return Self::constant(0.0, 0.0, (0.0, 0.0));

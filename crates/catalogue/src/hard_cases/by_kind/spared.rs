@@ -1,7 +1,8 @@
 //! Kinds that a row does not concern, with the reasons.
 
 use super::integrators::is_integrator;
-use super::{estimators, flights, spectral};
+use super::{flights, spectral};
+use crate::estimators::{self, is_estimator};
 
 /// Rows of the list of hard cases: number and difficulty.
 pub const ROWS: [(u32, &str); 22] = [
@@ -65,7 +66,7 @@ struct Reason {
     why: &'static str,
 }
 
-const REASONS: [Reason; 19] = [
+const REASONS: [Reason; 18] = [
     Reason {
         rows: &[3, 13, 21],
         kinds: Kinds::Integrators,
@@ -131,28 +132,13 @@ const REASONS: [Reason; 19] = [
     },
     Reason {
         rows: &[11],
-        kinds: Kinds::These(&[
-            "woodcock",
-            "line_integral",
-            "next_flight",
-            "p_series",
-            "generalised_poisson",
-            "adaptive_ratio",
-            "hybrid",
-            "progressive_majorant",
-            "jittered_flight",
-        ]),
+        kinds: Kinds::These(&["jittered_flight"]),
         why: "one majorant for all of the ray would ask for 1e9 look-ups: a case for rates and bounds in cells",
     },
     Reason {
         rows: &[9, 20],
-        kinds: Kinds::These(&["hybrid", "jittered_flight"]),
+        kinds: Kinds::These(&["jittered_flight"]),
         why: "its law is one of each stratum of one majorant, of which there would be a million",
-    },
-    Reason {
-        rows: &[20],
-        kinds: Kinds::These(&["jittered_ratio"]),
-        why: "its law is one of each stratum, of which there would be a million",
     },
     Reason {
         rows: &[4, 5],
@@ -166,7 +152,7 @@ const REASONS: [Reason; 19] = [
     },
     Reason {
         rows: &[15],
-        kinds: Kinds::These(&["regular", "inversion_flight", "newton_flight"]),
+        kinds: Kinds::These(&["inversion_flight", "newton_flight"]),
         why: "it looks nothing up but a closed form",
     },
 ];
@@ -174,8 +160,7 @@ const REASONS: [Reason; 19] = [
 /// The reason why `row` does not concern `kind`; `None` where it does.
 #[must_use]
 pub fn spared(kind: &str, row: u32) -> Option<&'static str> {
-    let is_gray =
-        || estimators::subjects().iter().chain(&flights::subjects()).any(|subject| subject.kind == kind);
+    let is_gray = || is_estimator(kind) || flights::subjects().iter().any(|subject| subject.kind == kind);
     let concerns = |reason: &&Reason| {
         reason.rows.contains(&row)
             && match reason.kinds {
@@ -183,12 +168,10 @@ pub fn spared(kind: &str, row: u32) -> Option<&'static str> {
                     is_gray() || spectral::subjects().iter().any(|subject| subject.kind == kind)
                 }
                 Kinds::Gray => is_gray(),
-                Kinds::EstimatorsBut(other) => {
-                    kind != other && estimators::subjects().iter().any(|subject| subject.kind == kind)
-                }
+                Kinds::EstimatorsBut(other) => kind != other && is_estimator(kind),
                 Kinds::Integrators => is_integrator(kind),
                 Kinds::These(kinds) => kinds.contains(&kind),
             }
     };
-    REASONS.iter().find(concerns).map(|reason| reason.why)
+    estimators::spared(kind, row).or_else(|| REASONS.iter().find(concerns).map(|reason| reason.why))
 }

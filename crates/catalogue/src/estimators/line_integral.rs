@@ -1,10 +1,43 @@
-//! Mistakes in raab-2008 algorithm 2, both in where the first collision lies.
+//! The line integral of raab-2008 algorithm 2: several flights, their first collisions stratified.
 
-use super::trial::{LAWFUL, judged, theory_on};
-use super::{Evident, Twin};
+use super::Kind;
+use super::on_profile::{ONE_MAJORANT, estimator, one_lookup_a_mean_free_path};
+use super::add;
+use super::woodcock::ENDING;
+use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
+use crate::hard_cases::Subject;
+use crate::twins::trial::{judged, theory_on};
+use crate::twins::{Evident, Twin};
 use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{LineIntegral, TransmittanceEstimator, Woodcock};
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind { name: "line_integral", checks: Vec::new, twins, subjects, spared: &[ONE_MAJORANT] };
+
+/// Flights of a line integral of several, whose look-ups have a skewed law of which only the mean is known.
+const FLIGHTS: u64 = 800_000;
+
+/// The law on a medium whose own majorant is one, with each of these numbers of flights.
+pub(crate) fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>, splits: &[u32]) -> Vec<Check> {
+    let of = |&splits: &u32| {
+        // The look-ups of n flights are less skewed than those of one.
+        let samples = if splits == 1 { ENDING } else { FLIGHTS / u64::from(splits) };
+        let name = format!("line_integral_{splits}");
+        add(specimen, &name, Law::Transmittance, samples, move |specimen, run| {
+            specimen.line_integral(splits, run)
+        })
+        .about([KIND.name])
+    };
+    splits.iter().map(of).collect()
+}
+
+fn subjects() -> Vec<Subject> {
+    vec![
+        estimator!("line integral of 4", above: false, below: false, |_| LineIntegral::new(4).expect(LAWFUL))
+            .tried_where(one_lookup_a_mean_free_path),
+    ]
+}
 
 /// Algorithm 2 with the optical distance of the first collision as a function of u in \[0, 1) and p_V.
 struct WrongFirstStep {
@@ -73,11 +106,9 @@ fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> 
         let theory = theory_on(&field, &right, &[]);
         judged(&field, &WrongFirstStep { splits: 4, majorant: 1.0, first }, theory, run)
     })
-    .about(["line_integral"])
 }
 
-/// Lists the twins.
-pub(super) fn twins() -> Vec<Twin> {
+fn twins() -> Vec<Twin> {
     vec![
         // The flight may leave at once, which p_V has already excluded: E = (1 − p_V) + p_V T = 0.423 for 0.333.
         twin(

@@ -1,7 +1,8 @@
 //! Mistakes with the sampling extinction.
 
-use super::trial::{LAWFUL, judged, theory_on};
-use super::{Evident, Twin};
+use crate::checks::LAWFUL;
+use crate::twins::trial::{judged, theory_on};
+use crate::twins::{Evident, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant, Vacuum,
@@ -57,8 +58,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(field(), &tracking(rate.clone()), &rate.breakpoints());
                 judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
             },
-        )
-        .about(["double_particle"]),
+        ),
         // E = exp(−1) for exp(−1.25); its variance is that of the first cell, exp(0.5) − 1.
         Twin::new(
             "double particle",
@@ -71,7 +71,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(field(), &twin, &with_a_hole().breakpoints());
                 judged(&field(), &twin, theory, run)
             },
-        )
-        .about(["double_particle"]),
+        ),
     ]
 }

@@ -1,12 +1,35 @@
-//! Mistakes with a majorant.
+//! Woodcock tracking, which scores 0 or 1.
 
-use super::trial::{LAWFUL, judged_with_scores, theory_on};
-use super::{Evident, Rejection, Twin};
+use super::Kind;
+use super::on_profile::{ONE_MAJORANT, estimator, one_lookup_a_mean_free_path};
+use super::add;
+use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
+use crate::hard_cases::Subject;
+use crate::twins::trial::{judged_with_scores, theory_on};
+use crate::twins::{Evident, Rejection, Twin};
 use fairflight_laws::scores;
 use fairflight_laws::transmittance::Admitted;
 use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, Watched};
 use fairflight_sources::{Scripted, UniformSource};
 use fairflight_transmittance::{TransmittanceEstimator, Woodcock};
+use std::sync::Arc;
+
+pub(super) const KIND: Kind = Kind { name: "woodcock", checks: Vec::new, twins, subjects, spared: &[ONE_MAJORANT] };
+
+/// Samples of a quick run of a walk that ends: more where closed moments ask for them.
+pub(super) const ENDING: u64 = 160_000;
+
+/// The law on a medium whose own majorant is one.
+pub(crate) fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>) -> Check {
+    add(specimen, "woodcock", Law::Transmittance, ENDING, Specimen::woodcock).about([KIND.name])
+}
+
+fn subjects() -> Vec<Subject> {
+    vec![
+        estimator!("woodcock", above: false, below: false, |_| Woodcock)
+            .tried_where(one_lookup_a_mean_free_path),
+    ]
+}
 
 /// The right flight, in a majorant that is none.
 struct TooLow(f64);
@@ -26,8 +49,7 @@ fn collides_as_printed(sigma_t: f64, majorant: f64, u: f64) -> bool {
     sigma_t / majorant >= u // right: u < sigma_t / majorant
 }
 
-/// Lists the twins.
-pub(super) fn twins() -> Vec<Twin> {
+fn twins() -> Vec<Twin> {
     vec![
         // E = exp(−∫ min(σ_t, majorant)) = exp(−1.6) for exp(−2): (0.2019 − 0.1353)/sqrt(0.1353·0.8647/N).
         Twin::new(
@@ -49,7 +71,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 // Of scores of 0 and 1 the variance says what the mean does.
                 Rejection { rejected, variance_z: None, ..statistical }
             },
-        ).about(["woodcock"]),
+        ),
         Twin::new(
             "woodcock",
             "collides_in_empty_space",
@@ -63,6 +85,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let rejected = ours == 1.0 && collides_as_printed(0.0, 1.0, 0.0);
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },
-        ).about(["woodcock"]),
+        ),
     ]
 }

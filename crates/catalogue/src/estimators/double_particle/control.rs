@@ -1,7 +1,8 @@
 //! Mistakes with the control.
 
-use super::trial::{LAWFUL, judged, theory_on};
-use super::{Evident, Twin};
+use crate::checks::LAWFUL;
+use crate::twins::trial::{judged, theory_on};
+use crate::twins::{Evident, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Constant, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant,
@@ -78,8 +79,7 @@ pub(super) fn twins() -> Vec<Twin> {
                 let twin = Tracking::new(double_particle(), WithoutThickness(control), sampling);
                 judged(&field, &twin, theory, run)
             },
-        )
-        .about(["double_particle"]),
+        ),
         // Every r is zero: the estimate is exp(−τ of the fit), wherever the points fell. The z is measured.
         Twin::new(
             "double particle, explorers",
@@ -96,7 +96,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(&field, &right, &also);
                 judged(&field, &FitsItsOwnWalk { sampling }, theory, run)
             },
-        )
-        .about(["double_particle"]),
+        ),
     ]
 }

@@ -1,34 +1,86 @@
-//! Mistakes in the weight of one collision, each in one line of a collision model or of the walk.
+//! The three versions of the single particle model at several albedos, below and above r = 1.
 
-use super::trial::{LAWFUL, judged, theory_on};
-use super::{Evident, Rejection, Twin};
-use fairflight_collision::{Albedo, Branch, CollisionModel, DoubleParticle, SingleParticle, Version};
-use fairflight_laws::{Run, collision};
+use super::Kind;
+use super::on_profile::estimator;
+use super::add;
+use super::woodcock::ENDING;
+use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
+use crate::hard_cases::{Profile, Subject};
+use crate::twins::trial::{judged, theory_on};
+use crate::twins::{Evident, Rejection, Twin};
+use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
+use fairflight_laws::{CheckResult, Run};
 use fairflight_media::{Constant, Extinction, Vacuum};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{SignedProduct, Tracking, TransmittanceEstimator};
+use std::sync::Arc;
 
-fn right() -> DoubleParticle {
-    DoubleParticle { albedo: Albedo::default() }
+pub(super) const KIND: Kind = Kind { name: "single_particle", checks: Vec::new, twins, subjects, spared: &[] };
+
+const VERSIONS: [(Version, &str); 3] = [
+    (Version::Terminating, "terminating"),
+    (Version::NonTerminating, "non_terminating"),
+    (Version::Adaptive, "adaptive"),
+];
+
+/// All versions at these albedos, with σ_samp above the `majorant` (r < 1) and below it: at the middle of 1 and
+/// 2/(1 + a) for the maximum, the end of the terminating domain, so that all three are defined.
+pub(crate) fn all_versions<F: SpecimenField>(
+    specimen: &Arc<Specimen<F>>,
+    majorant: f64,
+    albedos: &[f64],
+) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for &a in albedos {
+        let greatest_ratio = 0.5 * (1.0 + 2.0 / (1.0 + a));
+        for (version, version_name) in VERSIONS {
+            for (side, sampling) in [("above", 1.25 * majorant), ("below", majorant / greatest_ratio)] {
+                let name = format!("{version_name}_albedo_{a}_{side}_the_extinction");
+                checks.push(one(specimen, &name, version, a, sampling));
+            }
+        }
+    }
+    checks
 }
 
-/// A double particle model of which only the drawn weight is wrong.
-#[derive(Clone, Copy)]
-struct WrongWeight(fn(f64) -> f64);
+/// The two versions that admit every r, with σ_samp at the `majorant`: a field of either sign.
+pub(crate) fn of_any_sign<F: SpecimenField>(specimen: &Arc<Specimen<F>>, majorant: f64) -> Vec<Check> {
+    VERSIONS[1..]
+        .iter()
+        .map(|&(version, name)| one(specimen, &format!("{name}_albedo_0.5"), version, 0.5, majorant))
+        .collect()
+}
 
-impl CollisionModel for WrongWeight {
-    fn admits(&self, r: f64) -> bool {
-        right().admits(r)
-    }
-    fn scattered(&self, r: f64) -> Branch {
-        right().scattered(r)
-    }
-    fn transmitted(&self, r: f64) -> Branch {
-        right().transmitted(r)
-    }
-    fn transmit(&self, r: f64, _source: &mut impl UniformSource) -> Option<f64> {
-        Some((self.0)(r)) // right: Some(1 − r)
-    }
+fn one<F: SpecimenField>(
+    specimen: &Arc<Specimen<F>>,
+    name: &str,
+    version: Version,
+    albedo: f64,
+    sampling: f64,
+) -> Check {
+    let length = specimen.field.length();
+    add(specimen, name, Law::Transmittance, ENDING, move |specimen, run| {
+        let (Ok(albedo), Ok(sampling)) = (Albedo::new(albedo), Constant::new(sampling, length)) else {
+            return CheckResult::exact(false, "refused: albedo or sigma_samp");
+        };
+        let model = SingleParticle { version, albedo };
+        specimen.tracking(&Tracking::new(model, Vacuum::new(length), sampling), run)
+    })
+    .about([KIND.name])
+}
+
+fn subjects() -> Vec<Subject> {
+    vec![
+        estimator!("terminating", above: false, below: false, |profile| of_profile(profile, Version::Terminating)),
+        estimator!("non-terminating", above: true, below: true, |profile| {
+            of_profile(profile, Version::NonTerminating)
+        }),
+        estimator!("adaptive", above: true, below: true, |profile| of_profile(profile, Version::Adaptive)),
+    ]
+}
+
+fn of_profile(profile: &Profile, version: Version) -> Tracking<SingleParticle, Vacuum, Profile> {
+    Tracking::new(single(version, 0.5), Vacuum::new(profile.length()), profile.rates(1.0))
 }
 
 /// The loop runs while E > 0 instead of while |E| > 0.
@@ -60,21 +112,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for StopsBelowZero {
     }
 }
 
-/// σ_t = 1 on a length of 2, as in hard case 3.
-fn field() -> Constant {
-    Constant::new(1.0, 2.0).expect(LAWFUL)
-}
-
-fn wrong_weight(weight: fn(f64) -> f64, sampling: f64, run: Run) -> Rejection {
-    // r = 1/σ_samp: the exact law of collisions sees it too.
-    let model = WrongWeight(weight);
-    let exact = collision::check(&model, 0.0, &[1.0 / sampling]);
-    let sampling = Constant::new(sampling, 2.0).expect(LAWFUL);
-    let theory = theory_on(field(), &Tracking::new(right(), Vacuum::new(2.0), sampling), &[]);
-    let rejection = judged(&field(), &Tracking::new(model, Vacuum::new(2.0), sampling), theory, run);
-    Rejection { rejected: rejection.rejected && exact.is_err(), ..rejection }
-}
-
 fn single(version: Version, albedo: f64) -> SingleParticle {
     SingleParticle { version, albedo: Albedo::new(albedo).expect(LAWFUL) }
 }
@@ -91,27 +128,8 @@ fn outside_the_terminating_domain(sigma_t: f64, length: f64, sampling: f64, run:
     Rejection { rejected: rejection.rejected && refused, ..rejection }
 }
 
-/// Lists the twins.
-pub(super) fn twins() -> Vec<Twin> {
+fn twins() -> Vec<Twin> {
     vec![
-        // r = 4/3: E = exp(σ_samp L (|1 − r| − 1)) = exp(−1) for exp(−2); Var/T² = exp(8/3) − 1 = 13.4.
-        Twin::new(
-            "double particle",
-            "absolute_weight",
-            "weight |1 − r| for 1 − r: the sign of E_tran lost (as in the extracted SimulateParticle, errata)",
-            "sigma_t 1, length 2, sigma_samp 3/4",
-            (50_000, Evident::Mean { z: 105.0 }),
-            |run| wrong_weight(|r| (1.0 - r).abs(), 0.75, run),
-        ).about(["double_particle"]),
-        // E = exp(−σ_samp L) where r > 1: exp(−1.5) for exp(−2).
-        Twin::new(
-            "double particle",
-            "clamped_weight",
-            "weight max(0, 1 − r): a negative weight clamped (renderers that take sigma_samp for a majorant)",
-            "sigma_t 1, length 2, sigma_samp 3/4",
-            (50_000, Evident::Mean { z: 39.6 }),
-            |run| wrong_weight(|r| (1.0 - r).max(0.0), 0.75, run),
-        ).about(["double_particle"]),
         // |1 − r| = 1.5 is no probability: the weight is −1 for sure, E = exp(−2 · 0.2) for exp(−0.5). Judged with the
         // moments of the version that is defined there, Var/T² = exp(0.2 · 2.5²) − 1 = 2.49.
         Twin::new(
@@ -121,7 +139,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 0.5, sigma_samp 0.4, albedo 0",
             (200_000, Evident::Mean { z: 29.8 }),
             |run| outside_the_terminating_domain(1.0, 0.5, 0.4, run),
-        ).about(["single_particle"]),
+        ),
         // E = 1, what a renderer makes of hard case 5, for e; Var/T² = exp(4 · 0.25²) − 1 = 0.284.
         Twin::new(
             "single particle",
@@ -130,7 +148,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t −0.5, length 2, sigma_samp 2, albedo 0",
             (50_000, Evident::Mean { z: 265.0 }),
             |run| outside_the_terminating_domain(-0.5, 2.0, 2.0, run),
-        ).about(["single_particle"]),
+        ),
         // a = 0.5, r = 1.25: only walks without a collision survive, E = exp(−1.6) for exp(−2).
         Twin::new(
             "single particle",
@@ -139,11 +157,13 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 2, sigma_samp 0.8, albedo 0.5",
             (50_000, Evident::Mean { z: 28.7 }),
             |run| {
+                // As in hard case 3.
+                let field = Constant::new(1.0, 2.0).expect(LAWFUL);
                 let sampling = Constant::new(0.8, 2.0).expect(LAWFUL);
                 let model = single(Version::NonTerminating, 0.5);
-                let theory = theory_on(field(), &Tracking::new(model, Vacuum::new(2.0), sampling), &[]);
-                judged(&field(), &StopsBelowZero { model, sampling }, theory, run)
+                let theory = theory_on(field, &Tracking::new(model, Vacuum::new(2.0), sampling), &[]);
+                judged(&field, &StopsBelowZero { model, sampling }, theory, run)
             },
-        ).about(["single_particle"]),
+        ),
     ]
 }

@@ -1,64 +1,31 @@
-//! Estimators without variance, or with a bias of their own: the closed form of each medium against quadrature, and a majorant that is
-//! still found.
+//! A majorant that is still found: the bias of its first estimate.
 
-use super::estimators::add;
-use super::media::{LAWFUL, analytic_cosine, voxels};
-use super::specimen::{Specimen, SpecimenField};
-use super::{Check, Law};
+use super::Kind;
+use super::on_profile::{ONE_MAJORANT, estimator, one_lookup_a_mean_free_path};
+use super::add;
+use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
+use crate::hard_cases::Subject;
 use fairflight_freeflight::lookups_of_a_walk;
 use fairflight_laws::lookups::LookupLaw;
-use fairflight_laws::transmittance::Observed;
-use fairflight_media::{
-    Constant, Extinction, OpticalThickness, PiecewiseConstant, PiecewiseLinear, RayQuadrature, Tolerance,
-};
+use fairflight_media::{Extinction, Majorant, PiecewiseConstant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use fairflight_stats::Scores;
-use fairflight_transmittance::{
-    ClosedForm, ProductLaw, ProgressiveMajorant, Regular, Theory, TransmittanceEstimator,
-};
-use glam::{DVec3, dvec3};
+use fairflight_transmittance::{ClosedForm, ProductLaw, ProgressiveMajorant, Theory, TransmittanceEstimator};
 use std::sync::Arc;
 
-/// Lists the checks.
-pub(super) fn checks() -> Vec<Check> {
-    let steps = PiecewiseConstant::new(vec![0.0, 1.0, 2.5, 4.0], vec![1.2, 0.1, 0.6]).expect(LAWFUL);
-    let signed = PiecewiseConstant::new(vec![0.0, 1.0, 2.0, 3.5], vec![1.0, -0.5, 0.4]).expect(LAWFUL);
-    let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
-    let oblique = analytic_cosine(dvec3(-9.0, 3.0, -4.0), dvec3(0.55, -0.2, 0.81));
-    let mut checks = vec![
-        regular("constant", Constant::new(0.7, 3.0).expect(LAWFUL)),
-        regular("piecewise_constant", steps.clone()),
-        regular("piecewise_constant_negative", signed),
-        regular("piecewise_linear", tent),
-        regular("eq21_seed_ray", analytic_cosine(DVec3::ZERO, DVec3::Z)),
-        regular("eq21_oblique_ray", oblique),
-        regular("voxels", voxels()),
-    ];
-    let steps = Arc::new(Specimen::closed("piecewise_constant", steps));
-    for guess in [0.3, 0.9] {
-        checks.push(progressive(&steps, guess));
-    }
-    checks
-}
+pub(super) const KIND: Kind = Kind { name: "progressive_majorant", checks, twins: Vec::new, subjects, spared: &[ONE_MAJORANT] };
 
-/// The closed form against quadrature: one estimate is all there is to know.
-fn regular<F: SpecimenField + OpticalThickness>(name: &'static str, field: F) -> Check
-where
-    for<'f, 'e> &'e Regular:
-        TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e Regular>>,
-{
-    let specimen = Arc::new(Specimen::integrated(name, field, Tolerance::TIGHT));
-    add(&specimen, "regular", Law::Transmittance, 1, |specimen, run| {
-        specimen.examine(&Regular, &[], |_| Scores::Unbounded, LookupLaw::Fixed, run)
-    })
-    .about(["regular"])
+fn checks() -> Vec<Check> {
+    let steps = PiecewiseConstant::new(vec![0.0, 1.0, 2.5, 4.0], vec![1.2, 0.1, 0.6]).expect(LAWFUL);
+    let steps = Arc::new(Specimen::closed("piecewise_constant", steps));
+    [0.3, 0.9].map(|guess| on(&steps, guess)).into()
 }
 
 /// The first estimate of a run: with the guess μ of its start, whatever is learnt on the way.
 #[derive(Clone, Copy)]
-pub(crate) struct FirstEstimate {
-    pub(crate) guess: f64,
-    pub(crate) start: ProgressiveMajorant,
+struct FirstEstimate {
+    guess: f64,
+    start: ProgressiveMajorant,
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for FirstEstimate {
@@ -103,7 +70,7 @@ impl FirstEstimate {
     }
 }
 
-fn progressive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, guess: f64) -> Check {
+fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>, guess: f64) -> Check {
     let estimator = FirstEstimate { guess, start: ProgressiveMajorant::new(guess).expect(LAWFUL) };
     let name = format!("progressive_majorant_{guess}");
     add(specimen, &name, Law::OwnExpectation, 80_000, move |specimen, run| {
@@ -113,5 +80,16 @@ fn progressive<F: SpecimenField>(specimen: &Arc<Specimen<F>>, guess: f64) -> Che
         };
         specimen.examine_with_lookups(&estimator, &[], |_| Scores::Unbounded, lookups, run)
     })
-    .about(["progressive_majorant"])
+    .about([KIND.name])
+}
+
+fn subjects() -> Vec<Subject> {
+    vec![
+        estimator!("first estimate", above: true, below: false, |profile| {
+            // One look-up on average where there is no majorant to begin with.
+            let guess = if profile.depth() > 0.0 { profile.majorant() } else { 1.0 / profile.length().max(1.0) };
+            FirstEstimate { guess, start: ProgressiveMajorant::new(guess).expect(LAWFUL) }
+        })
+        .tried_where(one_lookup_a_mean_free_path),
+    ]
 }

@@ -1,7 +1,7 @@
 //! −log(u): infinite at u = 0 (raab-2008 algorithm 1 as printed).
 
-use super::trial::LAWFUL;
-use super::{Evident, Rejection, Twin};
+use crate::checks::LAWFUL;
+use crate::twins::{Evident, Rejection, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{Constant, Vacuum};
 use fairflight_sources::{Scripted, UniformSource};
@@ -42,7 +42,6 @@ pub(super) fn twins() -> Vec<Twin> {
                     format!("an optical distance of {depth}; the walk scores {twin} for {ours}"),
                 )
             },
-        )
-        .about(["double_particle"]),
+        ),
     ]
 }

@@ -1,37 +1,37 @@
-//! The estimators made of combs, on a profile of each kind that they tell apart: kinks, smoothness, signs and noise.
+//! Unbiased ray marching: combs, their symmetric means and a roulette, on a profile of each kind that they tell apart: kinks, smoothness,
+//! signs and noise.
 
-use super::estimators::add;
-use super::media::{LAWFUL, analytic_cosine};
-use super::specimen::{Specimen, SpecimenField};
-use super::{Check, Law};
+mod twins;
+
+use super::Kind;
+use super::on_profile::estimator;
+use super::profiles::{rough_cells, seed_ray, signed, tent};
+use super::add;
+use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
+use crate::hard_cases::Subject;
 use fairflight_freeflight::HIGHEST_MOMENT;
 use fairflight_laws::CheckResult;
 use fairflight_laws::lookups::{self, LookupLaw};
-use fairflight_media::{PiecewiseConstant, PiecewiseLinear};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::Scores;
-use fairflight_transmittance::{
-    Comb, CombShape, Jackknife, Roulette, RunningCumulant, Telescoping, UnbiasedRayMarching,
-};
-use glam::DVec3;
+use fairflight_transmittance::{Comb, CombShape, Roulette, RunningCumulant, UnbiasedRayMarching};
 use std::sync::Arc;
 
-/// Samples of a quick run: of a roulette that goes on once in ten, of one that does every other time, of several segments, and of
-/// levels. The look-ups of roulettes have closed moments; those of geometric levels double with each: their skewness is infinite at
-/// the ratios in use, and no N tests them. The shape of the estimates is that of the sample, which asks for what is left.
+pub(super) const KIND: Kind = Kind { name: "unbiased_ray_marching", checks, twins: twins::twins, subjects, spared: &[] };
+
+/// Samples of a quick run: of a roulette that goes on once in ten, of one that does every other time, and of several segments. The look-ups
+/// of roulettes have closed moments. The shape of the estimates is that of the sample, which asks for what is left.
 const RARE: u64 = 300_000;
 const FREQUENT: u64 = 160_000;
 const SEGMENTS: u64 = 80_000;
-const LEVELS: u64 = 250_000;
 /// Combs that resolve their profile have next to no variance.
 const RESOLVED: u64 = 60_000;
 
-/// Checks of combs, for the catalogue.
-pub(super) fn checks() -> Vec<Check> {
+fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
+    let matched = |teeth: u32| (teeth, CombShape::EndpointMatched);
 
-    let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
-    let specimen = Arc::new(Specimen::closed("piecewise_linear", tent));
+    let specimen = tent();
     for (name, shape) in [
         ("comb_uniform", CombShape::Uniform),
         ("comb_endpoint_matched", CombShape::EndpointMatched),
@@ -41,45 +41,25 @@ pub(super) fn checks() -> Vec<Check> {
     ] {
         checks.push(marching(&specimen, name, FREQUENT, (2, shape), 0.5, 1));
     }
-    let matched = |teeth: u32| (teeth, CombShape::EndpointMatched);
     checks.push(marching(&specimen, "comb_segments_matched", SEGMENTS, matched(1), 0.5, 4));
     checks.push(marching(&specimen, "comb_kettunen", RARE, (3, CombShape::Uniform), 0.9, 1));
     checks.push(tuned(&specimen, RARE, (2, CombShape::Uniform)));
-    checks.extend(telescoping(&specimen, LEVELS, 2, Telescoping::matched_ratio(4.0)));
-    checks.push(jackknife(&specimen, 2));
 
-    let specimen = Arc::new(Specimen::closed("eq21_seed_ray", analytic_cosine(DVec3::ZERO, DVec3::Z)));
+    let specimen = seed_ray();
     checks.push(marching(&specimen, "comb_uniform", FREQUENT, (15, CombShape::Uniform), 0.5, 1));
     checks.push(marching(&specimen, "comb_endpoint_matched", RESOLVED, matched(25), 0.5, 1));
     checks.push(marching(&specimen, "comb_bernoulli_3", RESOLVED, (25, CombShape::Bernoulli3), 0.5, 1));
     checks.push(marching(&specimen, "comb_segments_matched", RESOLVED, matched(5), 0.5, 5));
-    // The difference of level k falls like 4^−k and is divided by its probability r (1 − r)^k: with r = 3/4 no level stands out, and
-    // skewness and kurtosis exist. (With 0.9 they do not, and one estimate of a high level makes a run untestable.)
-    checks.extend(telescoping(&specimen, RESOLVED, 20, 0.75));
-    checks.push(jackknife(&specimen, 8));
 
-    let signed = PiecewiseConstant::new(vec![0.0, 1.0, 2.0, 3.5], vec![1.0, -0.5, 0.4]).expect(LAWFUL);
-    let specimen = Arc::new(Specimen::closed("piecewise_constant_negative", signed));
+    let specimen = signed();
     checks.push(marching(&specimen, "comb_uniform", FREQUENT, (3, CombShape::Uniform), 0.5, 1));
     checks.push(marching(&specimen, "comb_segments", SEGMENTS, (1, CombShape::Uniform), 0.5, 5));
-    checks.extend(telescoping(&specimen, 2 * LEVELS, 3, 0.75));
 
-    let specimen = Arc::new(Specimen::closed("rough_cells", rough_cells()));
+    let specimen = rough_cells();
     checks.push(marching(&specimen, "comb_uniform", FREQUENT, (12, CombShape::Uniform), 0.5, 1));
     checks.push(marching(&specimen, "comb_bernoulli_2", FREQUENT, (12, CombShape::Bernoulli2), 0.5, 1));
     checks.push(marching(&specimen, "comb_segments", SEGMENTS, (1, CombShape::Uniform), 0.5, 12));
-    checks.extend(telescoping(&specimen, LEVELS, 12, Telescoping::matched_ratio(2.0)));
-    checks.push(jackknife(&specimen, 12));
     checks
-}
-
-/// Sixty cells of a twentieth each, of values that follow no pattern: nothing that a dozen teeth resolve.
-fn rough_cells() -> PiecewiseConstant {
-    const CELLS: u32 = 60;
-    let edges = (0..=CELLS).map(|i| f64::from(i) / 20.0).collect();
-    // Multiples of a prime: three-digit noise.
-    let values = (0..CELLS).map(|i| f64::from((i * i * 379 + i * 811) % 997) / 700.0).collect();
-    PiecewiseConstant::new(edges, values).expect(LAWFUL)
 }
 
 fn marching<F: SpecimenField>(
@@ -96,7 +76,7 @@ fn marching<F: SpecimenField>(
     add(specimen, name, Law::Transmittance, samples, move |specimen, run| {
         specimen.examine(&estimator, &[], |_| Scores::Unbounded, lookups_of(&estimator), run)
     })
-    .about(["unbiased_ray_marching"])
+    .about([KIND.name])
 }
 
 /// The look-ups of an estimate: those that combs share, and the teeth of 1 + N combs in each segment, N the order of its roulette.
@@ -134,36 +114,21 @@ fn tuned<F: SpecimenField>(
         let estimator = estimator.with_roulette(Roulette::tuned(k2));
         specimen.examine(&estimator, &[], |_| Scores::Unbounded, lookups_of(&estimator), run)
     })
-    .about(["unbiased_ray_marching"])
+    .about([KIND.name])
 }
 
-/// Checks of telescoping combs without and with endpoint matching.
-fn telescoping<F: SpecimenField>(
-    specimen: &Arc<Specimen<F>>,
-    samples: u64,
-    teeth: u32,
-    ratio: f64,
-) -> [Check; 2] {
-    [("telescoping", CombShape::Uniform), ("telescoping_matched", CombShape::EndpointMatched)].map(
-        |(name, shape)| {
-            let estimator = Telescoping::new(teeth, ratio, shape).expect(LAWFUL);
-            add(specimen, name, Law::Transmittance, samples, move |specimen, run| {
-                specimen.examine(&estimator, &[], |_| Scores::Unbounded, LookupLaw::Unknown, run)
-            })
-            .about(["telescoping"])
-        },
-    )
+fn subjects() -> Vec<Subject> {
+    vec![
+        estimator!("whole", above: true, below: true, |_| UnbiasedRayMarching::new(four_teeth(), Roulette::KETTUNEN)),
+        estimator!("in segments", above: true, below: true, |_| {
+            UnbiasedRayMarching::new(four_teeth(), Roulette::KETTUNEN).in_segments(4).expect(LAWFUL)
+        }),
+    ]
 }
 
-/// The baseline: its own expectation.
-fn jackknife<F: SpecimenField>(specimen: &Arc<Specimen<F>>, teeth: u32) -> Check {
-    let comb = Comb::new(teeth, CombShape::Uniform).expect(LAWFUL);
-    add(specimen, "jackknife", Law::OwnExpectation, LEVELS, move |specimen, run| {
-        let jackknife = Jackknife::new(comb);
-        let result = specimen.examine(&jackknife, &[], |_| Scores::Unbounded, LookupLaw::Fixed, run);
-        specimen.baseline(&jackknife, result)
-    })
-    .about(["jackknife"])
+/// A comb for the profiles of hard cases.
+pub(super) fn four_teeth() -> Comb {
+    Comb::new(4, CombShape::EndpointMatched).expect(LAWFUL)
 }
 
 #[cfg(test)]

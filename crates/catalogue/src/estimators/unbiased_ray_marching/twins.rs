@@ -1,11 +1,12 @@
-//! Mistakes in estimators made of combs, most of them found in public code.
+//! Mistakes in unbiased ray marching, most of them found in public code.
 
-use super::trial::{LAWFUL, judged, theory_on};
-use super::{Evident, Twin};
-use fairflight_media::{AnalyticCosine, Clip, Extinction, PiecewiseConstant, PiecewiseLinear, Ray};
+use crate::checks::LAWFUL;
+use crate::twins::trial::{judged, theory_on};
+use crate::twins::{Evident, Twin};
+use fairflight_media::{AnalyticCosine, Clip, Extinction, PiecewiseConstant, Ray};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{
-    Comb, CombShape, Roulette, SymmetricMeans, Telescoping, TransmittanceEstimator, UnbiasedRayMarching,
+    Comb, CombShape, Roulette, SymmetricMeans, TransmittanceEstimator, UnbiasedRayMarching,
 };
 use glam::DVec3;
 
@@ -93,7 +94,6 @@ fn on_two_values(
         let theory = theory_on(&field, &UnbiasedRayMarching::new(comb, roulette), &[]);
         judged(&field, &wrong(Wrong::right(comb, roulette)), theory, run)
     })
-    .about(["unbiased_ray_marching"])
 }
 
 /// Order with the variate divided by the cumulative probability that it was just compared with.
@@ -159,37 +159,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for ShiftedByALength {
     }
 }
 
-/// Telescoping that subtracts only the even half of the finer comb.
-struct EvenHalfOnly {
-    comb: Comb,
-    level_ratio: f64,
-}
-
-impl<F: Extinction> TransmittanceEstimator<F> for EvenHalfOnly {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let (mut level, mut probability) = (0, self.level_ratio);
-        while source.next_uniform() >= self.level_ratio {
-            level += 1;
-            probability *= 1.0 - self.level_ratio;
-        }
-        let prepared = self.comb.prepare(field, 0.0, field.length());
-        let (u, combs) = (source.next_uniform(), 1_u32 << level);
-        let x: Vec<f64> = (0..combs)
-            .map(|a| self.comb.thickness(field, &prepared, (f64::from(a) + u) / f64::from(combs)))
-            .collect();
-        let base = x.iter().map(|x| (-x).exp()).sum::<f64>() / f64::from(combs);
-        if level == 0 {
-            return base;
-        }
-        let all = x.iter().sum::<f64>() / f64::from(combs);
-        let even = x.iter().step_by(2).sum::<f64>() / f64::from(combs / 2);
-        base + ((-all).exp() - (-even).exp()) / probability // right: the mean of both halves
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
-}
-
 /// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
@@ -243,20 +212,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(ray, &UnbiasedRayMarching::new(comb, Roulette::KETTUNEN), &[]);
                 judged(&ray, &ShiftedByALength { teeth: 12 }, theory, run)
             },
-        ).about(["unbiased_ray_marching"]),
-        Twin::new(
-            "telescoping",
-            "level_without_its_odd_half",
-            "a level's difference is taken from the even half of its comb alone, not from the mean of both halves (-9.6 %)",
-            "sigma_t 0.1, 1.5, 0.2 at 0, 1, 3, two matched teeth, level ratio 0.65",
-            (100_000, Evident::Mean { z: 114.0 }),
-            |run| {
-                let level_ratio = 0.65;
-                let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
-                let right = Telescoping::new(2, level_ratio, CombShape::EndpointMatched).expect(LAWFUL);
-                let theory = theory_on(&tent, &right, &[]);
-                judged(&tent, &EvenHalfOnly { comb: right.comb(), level_ratio }, theory, run)
-            },
-        ).about(["telescoping"]),
+        ),
     ]
 }

@@ -1,7 +1,8 @@
 //! A wrong closed form: the estimator is right, its theory is not. The test of the variance must say so.
 
-use super::trial::{LAWFUL, judged, theory_on};
-use super::{Evident, Twin};
+use crate::checks::LAWFUL;
+use crate::twins::trial::{judged, theory_on};
+use crate::twins::{Evident, Twin};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
 use fairflight_media::{Constant, PiecewiseConstant, RayQuadrature, Tolerance};
 use fairflight_transmittance::{ProductLaw, Theory, Tracking};
@@ -45,7 +46,6 @@ pub(super) fn twins() -> Vec<Twin> {
                 let wrong = of_the_whole_extinction(&field, model, 8.0, right);
                 judged(&field, &estimator, wrong, run)
             },
-        )
-        .about(["double_particle"]),
+        ),
     ]
 }
