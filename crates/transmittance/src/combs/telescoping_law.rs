@@ -227,3 +227,32 @@ impl Scale {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::combs::CombShape;
+    use crate::test_support::tent;
+    use fairflight_media::{Extinction, OpticalThickness};
+
+    /// Where levels shrink as those before them, what is left is worth adding: the variance comes out nearer than without it.
+    #[test]
+    fn levels_that_are_left_follow_from_those_before() {
+        let kinked = tent();
+        let tau = kinked.optical_thickness(0.0, kinked.length());
+        // Its ends differ: a level adds 1/(16 · 0.15) = 0.42 times what the one before did.
+        let estimator = Telescoping::new(2, 0.85, CombShape::Uniform).unwrap();
+        let within = |most: f64| {
+            let allowance = Allowance::of(most);
+            estimator.theory_within(&allowance, &kinked, tau, Tolerance::to(1e-9)).unwrap()
+        };
+        let all = within(1e8);
+        for most in [3e5, 1e6] {
+            let found = within(most);
+            let [variance, exact] = [found, all].map(|theory| theory.relative_central[0]);
+            let left = found.relative_variance_error * variance;
+            assert!(left > 10.0 * all.relative_variance_error * exact, "{most}: {left}");
+            assert!((variance - exact).abs() < 0.5 * left, "{most}: {variance} for {exact}, {left} left");
+        }
+    }
+}
