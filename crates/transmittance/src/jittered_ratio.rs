@@ -217,6 +217,9 @@ mod tests {
             assert!(strata.thickness <= epsilon && strata.count >= 1.0);
             assert!((strata.count * strata.thickness / thickness - 1.0).abs() < 1e-12);
             assert!((strata.count - 1.0) * epsilon < thickness * (1.0 + 1e-12));
+            // Who asks for it is told the same.
+            assert_eq!(JitteredRatio::new(epsilon).unwrap().epsilon(), epsilon);
+            assert_eq!(JitteredRatioInCells::new(epsilon).unwrap().epsilon(), epsilon);
         }
         let half = Epsilon::new(0.5).unwrap();
         assert_eq!(Strata::of(&cell(2.0, 0.25, 0.25), 1.0, half).count, 0.0);
