@@ -11,6 +11,8 @@
 //! | [`single_scattering::Marching`] | perlin-1989 | one scattering event, a biased baseline |
 //! | [`PathTracer`] | raab-2008 4.1 | all orders, surfaces and medium |
 //!
+//! How a path tracer chooses directions and points of lights is a type of its own ([`extend`]).
+//!
 //! A walk looks the medium up at the rate of a [`SamplingExtinction`], which need not bound the extinction; whether it then has a
 //! second moment is what [`second_moment_growth`] measures.
 //!
@@ -33,6 +35,7 @@
 //! assert!((radiance - 1.0).abs() < 1e-12);
 //! ```
 
+pub mod extend;
 mod grid;
 mod growth;
 mod heuristic;

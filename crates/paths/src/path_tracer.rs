@@ -1,10 +1,12 @@
 //! Path tracing from the camera through surfaces and medium (raab-2008 section 4.1).
 
+use crate::extend::{Extension, LightCandidates, One, Own, PathSampling, Several};
 use crate::transport::{Types, World};
 use crate::{Heuristic, Integrator, Walk};
 use fairflight_media::Line;
 use fairflight_scene::Segment;
 use fairflight_sources::UniformSource;
+use std::num::NonZeroU32;
 
 /// Volumetric path tracing with next-event estimation: the reference for everything that knows surfaces.
 ///
@@ -23,6 +25,9 @@ use fairflight_sources::UniformSource;
 ///
 /// **Variance.** Of emitters with some size, see [`World::emitters_at`]. Point lights in a medium leave no second moment: raab-2008
 /// section 4.1 suggests to bound the geometric term and to compensate; but compensation cannot hit a point either.
+///
+/// **Extensions** choose directions otherwise, or the points of lights among several ([`extend`](crate::extend)): the expectation stays, the variance
+/// changes. Without them they cost nothing.
 ///
 /// **Roulette** looks at the vertex alone (reflectance, or what the collision left of the energy), not at the path before: bidirectional
 /// weights will rely on that.
@@ -54,11 +59,11 @@ use fairflight_sources::UniformSource;
 /// assert!((radiance - 0.25).abs() < 1e-15);
 /// ```
 #[derive(Debug)]
-pub struct PathTracer<'s, W: Types> {
+pub struct PathTracer<'s, W: Types, E = Own, L = One> {
     world: World<'s, W>,
     walk: Walk<W::Sampling>,
     shadow: W::Shadow,
-    heuristic: Heuristic,
+    sampling: PathSampling<E, L>,
     max_vertices: u32,
     truncated: u64,
 }
@@ -71,7 +76,28 @@ impl<'s, W: Types> PathTracer<'s, W> {
         shadow: W::Shadow,
         heuristic: Heuristic,
     ) -> Self {
-        Self { world, walk, shadow, heuristic, max_vertices: u32::MAX, truncated: 0 }
+        let sampling = PathSampling::by(heuristic);
+        Self { world, walk, shadow, sampling, max_vertices: u32::MAX, truncated: 0 }
+    }
+}
+
+impl<'s, W: Types, E, L> PathTracer<'s, W, E, L> {
+    /// The same with another choice of directions.
+    #[must_use]
+    pub fn with_extension<F: Extension<W>>(self, extension: F) -> PathTracer<'s, W, F, L> {
+        let Self { world, walk, shadow, max_vertices, truncated, .. } = self;
+        let PathSampling { heuristic, candidates, .. } = self.sampling;
+        let sampling = PathSampling { heuristic, extension, candidates };
+        PathTracer { world, walk, shadow, sampling, max_vertices, truncated }
+    }
+
+    /// The same with `candidates` points of each light of some extent, of which one is kept.
+    #[must_use]
+    pub fn with_light_candidates(self, candidates: NonZeroU32) -> PathTracer<'s, W, E, Several> {
+        let Self { world, walk, shadow, max_vertices, truncated, .. } = self;
+        let PathSampling { heuristic, extension, .. } = self.sampling;
+        let sampling = PathSampling { heuristic, extension, candidates: Several(candidates) };
+        PathTracer { world, walk, shadow, sampling, max_vertices, truncated }
     }
 
     /// The same with at most `max_vertices` vertices on surfaces and in the medium: a bias where a path has more.
@@ -86,11 +112,11 @@ impl<'s, W: Types> PathTracer<'s, W> {
     }
 }
 
-impl<W: Types> Integrator<W::Spectrum> for PathTracer<'_, W> {
+impl<W: Types, E: Extension<W>, L: LightCandidates> Integrator<W::Spectrum> for PathTracer<'_, W, E, L> {
     fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> W::Spectrum {
-        let Self { world, walk, shadow, heuristic, max_vertices, truncated } = self;
+        let Self { world, walk, shadow, sampling, max_vertices, truncated } = self;
         let segment = Segment { line: *line, length: f64::INFINITY, from: None, to: None };
-        let traced = world.trace(walk, (*heuristic, *max_vertices), segment, shadow, source);
+        let traced = world.trace(walk, (sampling, *max_vertices), (segment, None), shadow, source);
         *truncated += u64::from(traced.is_cut);
         traced.radiance
     }

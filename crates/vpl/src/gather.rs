@@ -2,6 +2,7 @@
 
 use crate::Vpl;
 use fairflight_media::Line;
+use fairflight_paths::extend::PathSampling;
 use fairflight_paths::transport::{Scattered, Types, Vertex, World};
 use fairflight_paths::{Heuristic, Walk};
 use fairflight_scene::{Geometry, Segment, Spectrum};
@@ -173,7 +174,8 @@ impl<W: Types> Gather<'_, W> {
         {
             let line = Line { origin: hit.position, direction: passage.direction };
             let next = Segment { line, length: f64::INFINITY, from: Some(hit.index), to: None };
-            let behind = world.trace(walk, (*heuristic, MOST_VERTICES), next, shadow, source);
+            let sampling = &mut PathSampling::by(*heuristic);
+            let behind = world.trace(walk, (sampling, MOST_VERTICES), (next, None), shadow, source);
             arriving += behind.radiance * passage.radiance_scale;
         }
         if arriving != W::Spectrum::ZERO {

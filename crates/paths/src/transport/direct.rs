@@ -2,6 +2,7 @@
 
 use super::{Light, Types, Vertex, World};
 use crate::Heuristic;
+use crate::extend::{Extension, LightCandidates, One, PathSampling};
 use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
 use fairflight_sources::UniformSource;
 use glam::DVec3;
@@ -11,7 +12,7 @@ use glam::DVec3;
 pub struct Scattered {
     /// The vertex that chose the direction.
     pub vertex: Vertex,
-    /// Density of that direction \[1/sr\].
+    /// Density of that direction \[1/sr\], per candidate for a point of a light where there are several.
     pub pdf_solid_angle: f64,
 }
 
@@ -44,7 +45,7 @@ impl<W: Types> World<'_, W> {
     /// **Variance.** A point light at the distance r counts 1/r²; in a medium around it there is no second moment, and no second technique
     /// to help (raab-2008 section 4.1). For emitters of some size the weak singularity is gone: weight/density ≤ 1/density of the
     /// other technique, so that a contribution is at most L_e.
-    #[inline(never)]
+    #[inline]
     pub fn emitters_at(
         &self,
         heuristic: Heuristic,
@@ -52,15 +53,40 @@ impl<W: Types> World<'_, W> {
         shadow: &mut W::Shadow,
         source: &mut impl UniformSource,
     ) -> W::Spectrum {
+        self.emitters_by(&PathSampling::by(heuristic), vertex, shadow, source)
+    }
+
+    /// The same for any choice of directions, which has turned to this vertex, and any number of candidates for the point of a light.
+    ///
+    /// Of n candidates one is kept for what it would add were nothing between; it stands for their mean. The weights take their density
+    /// n-fold: heuristics know quotients alone, so that the density of the direction is divided by n instead, on both sides.
+    #[inline(never)]
+    pub fn emitters_by<E: Extension<W>, L: LightCandidates>(
+        &self,
+        sampling: &PathSampling<E, L>,
+        vertex: &Vertex,
+        shadow: &mut W::Shadow,
+        source: &mut impl UniformSource,
+    ) -> W::Spectrum {
+        let PathSampling { heuristic, extension, candidates } = sampling;
         let mut radiance = W::Spectrum::ZERO;
-        self.sample_emitters(vertex, source, |sampled, source| {
-            let EmitterSample { ref segment, arriving, pdf_solid_angle, scattered, .. } = sampled;
-            let visibility = self.attenuated_visibility(segment, shadow, source);
-            radiance += match pdf_solid_angle {
-                None => arriving * (scattered * visibility),
-                Some(pdf) => arriving * (heuristic.mis_weight(pdf, scattered) * scattered / pdf * visibility),
-            };
-        });
+        let share = |sampled: &EmitterSample<W::Spectrum>| {
+            let scattered = sampled.scattered;
+            let Some(pdf) = sampled.pdf_solid_angle else { return scattered };
+            let direction = sampled.segment.line.direction;
+            let other = extension.pdf_solid_angle(vertex, direction, scattered) / candidates.count();
+            heuristic.mis_weight(pdf, other) * scattered / pdf
+        };
+        let phase = &self.volume.phase;
+        self.kept_emitters(
+            (vertex, |direction| vertex.pdf_solid_angle(phase, direction)),
+            (*candidates, |sampled: &EmitterSample<_>| (sampled.arriving * share(sampled)).magnitude()),
+            source,
+            |sampled, scale, source| {
+                let visibility = self.attenuated_visibility(&sampled.segment, shadow, source);
+                radiance += sampled.arriving * (share(&sampled) * visibility * scale);
+            },
+        );
         radiance
     }
 
@@ -77,24 +103,49 @@ impl<W: Types> World<'_, W> {
         mut seen: impl FnMut(EmitterSample<W::Spectrum>, &mut S),
     ) {
         let phase = &self.volume.phase;
+        self.kept_emitters(
+            (vertex, |direction| vertex.pdf_solid_angle(phase, direction)),
+            (One, |_: &EmitterSample<_>| 1.0),
+            source,
+            |sampled, _, source| seen(sampled, source),
+        );
+    }
+
+    /// The same with several candidates for the point of each light of some extent, of which one is kept, and a density of its own for what is
+    /// scattered into a direction: `seen` learns by what its contribution is to be multiplied.
+    #[inline]
+    pub(crate) fn kept_emitters<S: UniformSource, L: LightCandidates>(
+        &self,
+        (vertex, scattered): (&Vertex, impl Fn(DVec3) -> f64),
+        (candidates, weigh): (L, impl Fn(&EmitterSample<W::Spectrum>) -> f64),
+        source: &mut S,
+        mut seen: impl FnMut(EmitterSample<W::Spectrum>, f64, &mut S),
+    ) {
         for (index, light) in self.lights.sources.iter().enumerate() {
             let Some(connection) = light.connect(vertex.position) else { continue };
-            let scattered = vertex.pdf_solid_angle(phase, connection.towards);
+            let scattered = scattered(connection.towards);
             if scattered > 0.0 {
                 let segment = vertex.leave(connection.towards, connection.distance.unwrap_or(f64::INFINITY));
                 let (light, arriving) = (Light::Source(index), connection.irradiance);
-                seen(EmitterSample { light, segment, arriving, pdf_solid_angle: None, scattered }, source);
+                let sampled = EmitterSample { light, segment, arriving, pdf_solid_angle: None, scattered };
+                seen(sampled, 1.0, source);
             }
         }
         for (index, map) in self.lights.background.maps.iter().enumerate() {
-            let [choice, u, v] = std::array::from_fn(|_| source.next_uniform());
-            let Some((towards, arriving)) = map.sample(choice, u, v) else { continue };
-            let scattered = vertex.pdf_solid_angle(phase, towards);
-            if scattered > 0.0 {
-                let pdf_solid_angle = Some(map.pdf_solid_angle(towards));
-                let segment = vertex.leave(towards, f64::INFINITY);
-                let light = Light::Map(index);
-                seen(EmitterSample { light, segment, arriving, pdf_solid_angle, scattered }, source);
+            let draw = |source: &mut S| {
+                let [choice, u, v] = std::array::from_fn(|_| source.next_uniform());
+                let (towards, arriving) = map.sample(choice, u, v)?;
+                let scattered = scattered(towards);
+                (scattered > 0.0).then(|| EmitterSample {
+                    light: Light::Map(index),
+                    segment: vertex.leave(towards, f64::INFINITY),
+                    arriving,
+                    pdf_solid_angle: Some(map.pdf_solid_angle(towards)),
+                    scattered,
+                })
+            };
+            if let Some((sampled, scale)) = candidates.keep(source, draw, &weigh) {
+                seen(sampled, scale, source);
             }
         }
         for &index in self.surfaces.emitters() {
@@ -102,15 +153,23 @@ impl<W: Types> World<'_, W> {
             if vertex.surface() == Some(index) {
                 continue;
             }
-            let (u, v) = (source.next_uniform(), source.next_uniform());
-            let Some(sample) = self.surfaces.sample_towards(index, vertex.position, u, v) else { continue };
-            let scattered = vertex.pdf_solid_angle(phase, sample.direction);
-            if scattered > 0.0 {
-                let towards = vertex.leave(sample.direction, sample.distance);
-                let segment = Segment { to: Some(index), ..towards };
-                let pdf_solid_angle = Some(sample.pdf_solid_angle);
-                let (light, arriving) = (Light::Surface(index), self.surfaces.surfaces()[index].emission);
-                seen(EmitterSample { light, segment, arriving, pdf_solid_angle, scattered }, source);
+            let draw = |source: &mut S| {
+                let (u, v) = (source.next_uniform(), source.next_uniform());
+                let sample = self.surfaces.sample_towards(index, vertex.position, u, v)?;
+                let scattered = scattered(sample.direction);
+                (scattered > 0.0).then(|| {
+                    let towards = vertex.leave(sample.direction, sample.distance);
+                    EmitterSample {
+                        light: Light::Surface(index),
+                        segment: Segment { to: Some(index), ..towards },
+                        arriving: self.surfaces.surfaces()[index].emission,
+                        pdf_solid_angle: Some(sample.pdf_solid_angle),
+                        scattered,
+                    }
+                })
+            };
+            if let Some((sampled, scale)) = candidates.keep(source, draw, &weigh) {
+                seen(sampled, scale, source);
             }
         }
     }

@@ -1,7 +1,8 @@
 //! One random path.
 
 use super::{Event, Scattered, Types, World};
-use crate::{Heuristic, Walk};
+use crate::Walk;
+use crate::extend::{Extension, LightCandidates, PathSampling};
 use fairflight_media::Line;
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
@@ -16,21 +17,21 @@ pub struct Traced<C> {
 }
 
 impl<W: Types> World<'_, W> {
-    /// The radiance that arrives along a ray, by one path: the loop of [`PathTracer`](crate::PathTracer).
+    /// The radiance that arrives along a ray, by one path: the loop of [`PathTracer`](crate::PathTracer). `from` is the vertex that chose the
+    /// ray; none for one from the camera or a smooth surface.
     #[inline(never)]
-    pub fn trace(
+    pub fn trace<E: Extension<W>, L: LightCandidates>(
         &self,
         walk: &Walk<W::Sampling>,
-        (heuristic, max_vertices): (Heuristic, u32),
-        mut segment: Segment,
+        (sampling, max_vertices): (&mut PathSampling<E, L>, u32),
+        (mut segment, mut from): (Segment, Option<Scattered>),
         shadow: &mut W::Shadow,
         source: &mut impl UniformSource,
     ) -> Traced<W::Spectrum> {
         let collisions = self.collisions(walk);
-        let phase = &self.volume.phase;
+        let heuristic = sampling.heuristic;
         let mut radiance = W::Spectrum::ZERO;
         let mut throughput = W::Spectrum::splat(1.0);
-        let mut from: Option<Scattered> = None;
         for _ in 0..max_vertices {
             let hit = self.surfaces.intersect(&segment);
             segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
@@ -58,16 +59,18 @@ impl<W: Types> World<'_, W> {
                 Event::Truncated => return Traced { radiance, is_cut: true },
             };
             let factor: W::Spectrum = factor;
-            let lit = self.emitters_at(heuristic, &vertex, shadow, source);
+            sampling.extension.prepare(self, &vertex);
+            let lit = self.emitters_by(sampling, &vertex, shadow, source);
             radiance += throughput * factor * lit;
             let survival = factor.magnitude().min(1.0);
             if source.next_uniform() >= survival {
                 return Traced { radiance, is_cut: false };
             }
-            throughput = throughput * factor * (1.0 / survival);
-            let direction = vertex.sample(phase, source.next_uniform(), source.next_uniform());
-            from = Some(Scattered { vertex, pdf_solid_angle: vertex.pdf_solid_angle(phase, direction) });
-            segment = vertex.leave(direction, f64::INFINITY);
+            let extended = sampling.extension.sample(self, &vertex, source);
+            throughput = throughput * factor * (extended.weight / survival);
+            let pdf_solid_angle = extended.pdf_solid_angle / sampling.candidates.count();
+            from = Some(Scattered { vertex, pdf_solid_angle });
+            segment = vertex.leave(extended.direction, f64::INFINITY);
         }
         Traced { radiance, is_cut: true }
     }
@@ -77,7 +80,7 @@ impl<W: Types> World<'_, W> {
 mod tests {
     use super::super::fixtures::{Scene, ball, diffuse, hazy, ray, square, vacuum};
     use super::*;
-    use crate::Uniform;
+    use crate::{Heuristic, Uniform};
     use fairflight_collision::Version;
     use fairflight_media::LineThickness;
     use fairflight_scene::{Material, Source};
@@ -95,8 +98,8 @@ mod tests {
     ) -> Traced<f64> {
         let walk = Walk::new(Version::Terminating, Uniform::new(0.5).unwrap());
         let mut source = Scripted::new(script.iter().copied());
-        let how = (Heuristic::Balance, max_vertices);
-        let traced = scene.world().trace(&walk, how, segment, &mut Regular, &mut source);
+        let how = (&mut PathSampling::by(Heuristic::Balance), max_vertices);
+        let traced = scene.world().trace(&walk, how, (segment, None), &mut Regular, &mut source);
         assert_eq!(source.remaining(), 0);
         traced
     }
