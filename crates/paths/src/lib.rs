@@ -10,6 +10,7 @@
 //! | [`single_scattering::LineSampled`] | raab-2008 3.1, algorithm 2 | one scattering event |
 //! | [`single_scattering::Marching`] | perlin-1989 | one scattering event, a biased baseline |
 //! | [`PathTracer`] | raab-2008 4.1 | all orders, surfaces and medium |
+//! | [`extend::PathReuse`] | antwerpen-2011 4.7 | the same, of several pixels that use each other's paths |
 //!
 //! How a path tracer chooses directions and points of lights is a type of its own ([`extend`]).
 //!

@@ -1,15 +1,18 @@
 //! Extensions of a path tracer (antwerpen-2011 sections 4.5 to 4.7): how the next direction is chosen, and the points of lights that a vertex is
 //! connected with.
 //!
-//! Each is a type that [`PathTracer`](crate::PathTracer) is generic over. [`Own`] and [`One`], without any, compile to nothing.
+//! Each is a type that [`PathTracer`](crate::PathTracer) is generic over. [`Own`] and [`One`], without any, compile to nothing. [`PathReuse`] is an
+//! integrator of its own, of several pixels at once.
 
 mod candidates;
 mod own;
 mod resampled;
+mod reuse;
 
 pub use candidates::{LightCandidates, One, Several};
 pub use own::Own;
 pub use resampled::{OwnShare, Resampled, ShareOutside};
+pub use reuse::{PathReuse, PixelGroups};
 
 use crate::Heuristic;
 use crate::transport::{Types, Vertex, World};
