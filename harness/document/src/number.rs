@@ -26,6 +26,11 @@ pub fn short(x: f64) -> String {
     rounded(x, 3)
 }
 
+/// The number with six significant digits: more than a figure shows.
+pub(crate) fn drawn(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
 /// A number with its interval, to the second digit of the interval's width: more would say nothing.
 #[must_use]
 pub fn measured(x: f64, [low, high]: [f64; 2]) -> String {

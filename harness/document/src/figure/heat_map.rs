@@ -14,6 +14,8 @@ const ACROSS: usize = 3;
 const HEIGHT: u32 = 380;
 /// Height of the bar of colours in pixels.
 const BAR: u32 = 110;
+/// A run of cells has a number if it is wider than this share of the panel.
+const NARROW: f64 = 0.08;
 /// Cells without a value.
 const MISSING: RGBColor = RGBColor(0xC9, 0xCD, 0xD3);
 
@@ -100,7 +102,10 @@ impl<'a> Drawn<'a> {
     fn foot(&self) -> u32 {
         match &self.map.content {
             Content::Values { .. } => BAR,
-            Content::Names { .. } => legend_height(self.entries::<SVGBackend<'_>>().len()),
+            Content::Names { .. } => {
+                let words: Vec<&str> = self.entries::<SVGBackend<'_>>().iter().map(|entry| entry.1).collect();
+                legend_height(&words)
+            }
         }
     }
 
@@ -152,6 +157,25 @@ fn runs<T: PartialEq + Copy>(row: &[T]) -> Vec<(usize, usize, T)> {
     runs
 }
 
+/// Edges between cells below a level and cells that are not, by the numbers of their columns and rows of edges.
+fn borders(panel: &Grid<Option<f64>>, level: f64) -> Vec<[[usize; 2]; 2]> {
+    let [columns, rows] = [panel.x.len(), panel.y.len()];
+    let is_below =
+        |column: usize, row: usize| panel.values[row * columns + column].map(|value| value < level);
+    let differ = |a: Option<bool>, b: Option<bool>| a.is_some() && b.is_some() && a != b;
+    let mut borders = Vec::new();
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let here = is_below(column, row);
+        if column + 1 < columns && differ(here, is_below(column + 1, row)) {
+            borders.push([[column + 1, row], [column + 1, row + 1]]);
+        }
+        if row + 1 < rows && differ(here, is_below(column, row + 1)) {
+            borders.push([[column, row + 1], [column + 1, row + 1]]);
+        }
+    }
+    borders
+}
+
 /// A number at a point, white on dark colours and black on light ones.
 fn number_at<Coord: Clone + 'static>(number: usize, at: Coord, ground: Rgb) -> Text<'static, Coord, String> {
     let light = u32::from(ground.0) * 3 + u32::from(ground.1) * 6 + u32::from(ground.2) > 1350;
@@ -174,7 +198,7 @@ impl Figure for Drawn<'_> {
             self.panel(k, place)?;
         }
         match self.scale() {
-            Some((axis, stretch)) => bar(&below, axis, stretch),
+            Some((axis, stretch)) => self.bar(&below, axis, stretch),
             None => legend(&below, &self.entries()),
         }
     }
@@ -204,6 +228,9 @@ impl Drawn<'_> {
             }
             for (first, length, name) in runs(&cells.names[here]) {
                 let Some(name) = name else { continue };
+                if x[first + length] - x[first] < NARROW * (stretches[0].high - stretches[0].low) {
+                    continue;
+                }
                 let middle = (0.5 * (x[first] + x[first + length]), 0.5 * (y[row] + y[row + 1]));
                 match longest.iter_mut().find(|known| known.0 == name) {
                     Some(known)
@@ -216,27 +243,45 @@ impl Drawn<'_> {
                 }
             }
         }
-        let Content::Names { names, .. } = &self.map.content else { return Ok(()) };
+        let names = match &self.map.content {
+            Content::Values { isolines, panels, .. } => {
+                for ends in isolines.iter().flat_map(|level| borders(&panels[k], *level)) {
+                    let ends = ends.map(|[column, row]| (x[column], y[row]));
+                    context.draw_series([PathElement::new(ends, WHITE.stroke_width(2))])?;
+                }
+                return Ok(());
+            }
+            Content::Names { names, .. } => names,
+        };
         for (name, _, across, up, _) in longest {
             context.draw_series([number_at(name + 1, (across, up), self.name_colour(&names[name]))])?;
         }
         Ok(())
     }
-}
 
-/// The bar of colours with its axis.
-fn bar<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, axis: &Axis, stretch: Stretch) -> Outcome<DB> {
-    let mut builder = ChartBuilder::on(area);
-    builder.margin_left(60).margin_right(60).margin_top(10);
-    let flat = Stretch::of(&Axis::linear("").within(0.0, 1.0), []);
-    let mut context = framed(builder, [stretch, flat], [&axis.title, ""], [8, 1])?;
-    let step = (stretch.high - stretch.low) / f64::from(colour_map::LEVELS);
-    context.draw_series((0..colour_map::LEVELS).map(|level| {
-        let from = stretch.low + f64::from(level) * step;
-        let shade = colour(colour_map::sequential(level));
-        Rectangle::new([(from, 0.0), (from + step, 1.0)], shade.filled())
-    }))?;
-    Ok(())
+    /// The bar of colours with its axis, and the levels at which the panels have lines.
+    fn bar<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        axis: &Axis,
+        stretch: Stretch,
+    ) -> Outcome<DB> {
+        let mut builder = ChartBuilder::on(area);
+        builder.margin_left(60).margin_right(60).margin_top(10);
+        let flat = Stretch::of(&Axis::linear("").within(0.0, 1.0), []);
+        let mut context = framed(builder, [stretch, flat], [&axis.title, ""], [8, 0])?;
+        let step = (stretch.high - stretch.low) / f64::from(colour_map::LEVELS);
+        context.draw_series((0..colour_map::LEVELS).map(|level| {
+            let from = stretch.low + f64::from(level) * step;
+            let shade = colour(colour_map::sequential(level));
+            Rectangle::new([(from, 0.0), (from + step, 1.0)], shade.filled())
+        }))?;
+        let Content::Values { isolines, .. } = &self.map.content else { return Ok(()) };
+        let places = isolines.iter().map(|level| on(axis, *level)).filter(|place| stretch.contains(*place));
+        context
+            .draw_series(places.map(|at| PathElement::new([(at, 0.0), (at, 1.0)], WHITE.stroke_width(2))))?;
+        Ok(())
+    }
 }
 
 /// Content of a heat map, for those who do not see it.
@@ -265,6 +310,15 @@ mod tests {
         let stretch = Stretch::of(&axis, []);
         assert_eq!(edges(&axis, &[0.0, 2.0, 6.0, 10.0], stretch), [0.0, 1.0, 4.0, 8.0, 10.0]);
         assert_eq!(edges(&axis, &[5.0], stretch), [0.0, 10.0]);
+    }
+
+    #[test]
+    fn a_level_is_crossed_between_cells_that_have_values() {
+        let values = |x: f64, y: f64| (x + y > 0.0).then_some(x * y);
+        let panel = Grid::of("", vec![0.0, 1.0, 2.0], vec![0.0, 1.0], values);
+        // 1 and 2 at the right end of the upper row; no value at the lower left.
+        assert_eq!(borders(&panel, 0.5), [[[1, 1], [2, 1]], [[2, 1], [3, 1]], [[1, 1], [1, 2]]]);
+        assert_eq!(borders(&panel, 9.0).len(), 0);
     }
 
     #[test]

@@ -8,8 +8,8 @@ mod heat_map;
 pub(crate) use heat_map::heat_map;
 
 use crate::figure::axis::on;
+use crate::number::{drawn, short};
 use crate::palette::{Dash, Look, Looks, Marker, css};
-use crate::short;
 use crate::{Area, Arrangement, Axis, Chart, Curve, Mark, Panel, Role, Scale};
 use serde_json::{Value, json};
 
@@ -171,13 +171,9 @@ fn dash(dash: Dash) -> &'static str {
     }
 }
 
-/// A number to six digits, more than a screen shows; the library takes null for a gap.
+/// A number that is drawn; the library takes null for a gap.
 fn finite(value: f64) -> Value {
-    if value.is_finite() {
-        json!(format!("{value:.5e}").parse::<f64>().unwrap_or(value))
-    } else {
-        Value::Null
-    }
+    if value.is_finite() { json!(drawn(value)) } else { Value::Null }
 }
 
 fn curve_traces(curve: &Curve, panel: &Panel, look: Look, [x, y]: [&str; 2], first: bool) -> Vec<Value> {
