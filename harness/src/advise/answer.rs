@@ -187,7 +187,12 @@ impl Answer {
 
     /// The meaning of the columns, and what is not certain.
     pub(super) fn notes(&self) -> String {
-        let mut notes = "\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n".to_owned();
+        let mut notes = format!(
+            "\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n\
+             all rays are random and below the majorant of the whole medium, {:.4}; harness report --vdb takes one ray through the middle of a \
+             volume, below a majorant of its own, where another estimator may lead\n",
+            self.majorant
+        );
         if self.uncertified > 0 {
             let (count, rays) = (self.uncertified, self.rays);
             notes.push_str(&format!(

@@ -30,6 +30,9 @@ pub(super) struct Subject {
     pub(super) walk_sampling: f64,
 }
 
+/// The id of a volume that was given.
+pub(super) const VOLUME: &str = "vdb";
+
 /// The seed ray of the analytic medium runs through its center.
 const AXIS: (DVec3, DVec3) = (DVec3::ZERO, DVec3::Z);
 
@@ -91,7 +94,7 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
         .map_or_else(|| "the density, or the only float grid,".to_owned(), |grid| format!("grid {grid}"));
     Subject::new(
         Names {
-            id: "vdb",
+            id: VOLUME,
             title: format!("OpenVDB volume {name}"),
             description: format!(
                 "{grid} of {name}, trilinear, times {scale}; the ray runs through the middle of the bounds along their \
