@@ -3,21 +3,11 @@
 /// 10ᵏ in Unicode superscripts.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
-    let digits = exponent.to_string();
-    let superscript = |c: char| match c {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        _ => '⁰',
+    let superscript = |c: char| match c.to_digit(10) {
+        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+        None => '⁻',
     };
-    format!("10{}", digits.chars().map(superscript).collect::<String>())
+    format!("10{}", exponent.to_string().chars().map(superscript).collect::<String>())
 }
 
 /// Three significant digits.

@@ -199,6 +199,16 @@ fn a_document_without_contents_is_still_a_document() {
 }
 
 #[test]
+fn a_wide_figure_does_not_stand_beside_the_answer() {
+    let mut document = fixture::document();
+    for (hero, is_beside) in [("variance", true), ("plane", false)] {
+        document.hero = Some(hero.to_owned());
+        let page = text(&written(&document, Script::None), "index.html");
+        assert_eq!(page.contains("class=\"answer beside\""), is_beside, "{hero}");
+    }
+}
+
+#[test]
 fn long_tables_are_folded_under_their_line() {
     let mut document = fixture::document();
     for block in document.sections.iter_mut().flat_map(|section| &mut section.blocks) {

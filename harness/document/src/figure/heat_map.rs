@@ -47,38 +47,28 @@ impl<'a> Drawn<'a> {
         Some((colours, Stretch::of(colours, values)))
     }
 
-    fn cells(&self, k: usize) -> (&'a str, &'a [f64], &'a [f64], Cells) {
-        fn parts<T>(panel: &Grid<T>) -> (&str, &[f64], &[f64]) {
-            (&panel.label, &panel.x, &panel.y)
-        }
+    fn cells(&self, k: usize) -> Cells {
         match &self.map.content {
             Content::Values { colours, panels, .. } => {
-                let panel = &panels[k];
+                let values = &panels[k].values;
                 let scale = self.scale().map(|(_, stretch)| stretch);
                 let shade = |value: &Option<f64>| {
                     let (value, scale) = ((*value)?, scale?);
                     let place = (on(colours, value) - scale.low) / (scale.high - scale.low);
                     (!place.is_nan()).then(|| colour_map::sequential(colour_map::level(place)))
                 };
-                let colours = panel.values.iter().map(shade).collect();
-                let names = vec![None; panel.values.len()];
-                let (label, x, y) = parts(panel);
-                (label, x, y, Cells { colours, names })
+                Cells { colours: values.iter().map(shade).collect(), names: vec![None; values.len()] }
             }
             Content::Names { names, panels, .. } => {
-                let panel = &panels[k];
-                let colours = panel.values.iter().map(|name| name.map(|k| self.name_colour(&names[k])));
-                let (label, x, y) = parts(panel);
-                (label, x, y, Cells { colours: colours.collect(), names: panel.values.clone() })
+                let values = &panels[k].values;
+                let colours = values.iter().map(|name| name.map(|k| self.name_colour(&names[k]))).collect();
+                Cells { colours, names: values.clone() }
             }
         }
     }
 
     fn count(&self) -> usize {
-        match &self.map.content {
-            Content::Values { panels, .. } => panels.len(),
-            Content::Names { panels, .. } => panels.len(),
-        }
+        self.map.content.frames().len()
     }
 
     fn entries<DB: DrawingBackend + 'a>(&self) -> Vec<Entry<'a, DB>> {
@@ -117,16 +107,10 @@ impl<'a> Drawn<'a> {
 
 /// An axis of a map; it reaches from the first centre to the last where it has no range.
 pub(crate) fn tight(axis: &Axis, map: &HeatMap) -> Axis {
-    fn centres<T>(panels: &[Grid<T>], x: bool) -> Vec<f64> {
-        panels.iter().flat_map(|panel| if x { &panel.x } else { &panel.y }).copied().collect()
-    }
-    let x = *axis == map.x;
-    let centres = match &map.content {
-        Content::Values { panels, .. } => centres(panels, x),
-        Content::Names { panels, .. } => centres(panels, x),
-    };
-    let ends = |[low, high]: [f64; 2], place: f64| [low.min(place), high.max(place)];
-    let [low, high] = centres.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+    let frames = map.content.frames();
+    let centres = frames.iter().flat_map(|(_, x, y)| if *axis == map.x { *x } else { *y });
+    let ends = |[low, high]: [f64; 2], &place: &f64| [low.min(place), high.max(place)];
+    let [low, high] = centres.fold([f64::INFINITY, f64::NEG_INFINITY], ends);
     match axis.range {
         None if low < high => axis.clone().within(low, high),
         _ => axis.clone(),
@@ -206,7 +190,7 @@ impl Figure for Drawn<'_> {
 
 impl Drawn<'_> {
     fn panel<DB: DrawingBackend>(&self, k: usize, area: &DrawingArea<DB, Shift>) -> Outcome<DB> {
-        let (label, columns, rows, cells) = self.cells(k);
+        let ((label, columns, rows), cells) = (self.map.content.frames()[k], self.cells(k));
         let stretches = [self.stretch(0), self.stretch(1)];
         let mut builder = ChartBuilder::on(area);
         builder.margin(8).margin_right(14);
@@ -286,16 +270,12 @@ impl Drawn<'_> {
 
 /// Content of a heat map, for those who do not see it.
 pub(crate) fn alternative(map: &HeatMap) -> String {
-    let (what, labels): (String, Vec<&str>) = match &map.content {
-        Content::Values { colours, panels, .. } => {
-            (colours.title.clone(), panels.iter().map(|panel| &*panel.label).collect())
-        }
-        Content::Names { names, panels, .. } => (
-            format!("the best of {}", number::listed(names)),
-            panels.iter().map(|panel| &*panel.label).collect(),
-        ),
+    let what = match &map.content {
+        Content::Values { colours, .. } => colours.title.clone(),
+        Content::Names { names, .. } => format!("the best of {}", number::listed(names)),
     };
-    let labels: Vec<&str> = labels.into_iter().filter(|label| !label.is_empty()).collect();
+    let frames = map.content.frames();
+    let labels: Vec<&str> = frames.iter().map(|frame| frame.0).filter(|label| !label.is_empty()).collect();
     let panels = if labels.is_empty() { String::new() } else { format!(" Panels: {}.", labels.join(", ")) };
     format!("{}. Heat map of {what}, over {} and {}.{panels}", map.title, map.x.title, map.y.title)
 }

@@ -108,28 +108,13 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
     )
 }
 
-/// The middle of the bounds, and half their diagonal: a ball that holds them.
-pub(super) fn enclosing_ball(bounds: &Bounds) -> (DVec3, f64) {
-    match *bounds {
-        Bounds::Sphere { center, radius } => (center, radius),
-        Bounds::Box { min, max } => (0.5 * (min + max), 0.5 * (max - min).length()),
-    }
-}
-
 fn through_the_middle(bounds: &Bounds) -> (DVec3, DVec3) {
-    let (middle, radius) = enclosing_ball(bounds);
+    let (middle, radius) = bounds.enclosing_ball();
     let extent = match *bounds {
         Bounds::Sphere { .. } => DVec3::Z,
         Bounds::Box { min, max } => max - min,
     };
-    let longest = extent.max_element();
-    let axis = if extent.x == longest {
-        DVec3::X
-    } else if extent.y == longest {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
+    let axis = DVec3::AXES[extent.max_position()];
     (middle - 2.0 * radius * axis, axis)
 }
 

@@ -30,7 +30,7 @@ fn soundness(report: &Report) -> String {
     let rays: Vec<String> = report
         .media
         .iter()
-        .map(|medium| format!("{} (T = {})", medium.title, short(medium.ray.transmittance)))
+        .map(|medium| format!("{} with T = {}", medium.title, short(medium.ray.transmittance)))
         .collect();
     let mut labels: Vec<&str> = Vec::new();
     for row in report.media.iter().flat_map(|medium| &medium.estimators) {
