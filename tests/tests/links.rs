@@ -69,6 +69,29 @@ fn no_link_is_dead() {
     assert!(links > 100, "only {links} links were read");
 }
 
+/// Files that a page of a report links to or shows.
+fn files_of_page(page: &str) -> Vec<&str> {
+    let after = |name: &'static str| page.split(name).skip(1).filter_map(|rest| rest.split('"').next());
+    after(" href=\"")
+        .chain(after(" src=\""))
+        .filter(|link| !link.starts_with('#') && !link.contains(':'))
+        .collect()
+}
+
+#[test]
+fn reviewed_pages_have_all_that_they_link_to() {
+    let mut links = 0;
+    for folder in fs::read_dir(repository().join("reports/reference")).unwrap() {
+        let folder = folder.unwrap().path();
+        let Ok(page) = fs::read_to_string(folder.join("index.html")) else { continue };
+        for link in files_of_page(&page) {
+            links += 1;
+            assert!(folder.join(link).is_file(), "{}: no {link}", folder.display());
+        }
+    }
+    assert!(links > 100, "only {links} links were read");
+}
+
 #[test]
 fn a_dead_link_is_found() {
     let page = repository().join("README.md");

@@ -199,7 +199,7 @@ fn a_long_file_says_why() {
 
 /// Product lines of the harness, its packages and the build script included: all lines of formatted Rust but modules of tests, integration tests,
 /// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised.
-const MOST_PRODUCT_LINES: usize = 30_200;
+const MOST_PRODUCT_LINES: usize = 30_150;
 
 #[test]
 fn the_harness_does_not_grow() {

@@ -1,4 +1,4 @@
-//! Comma-separated values (RFC 4180): full precision, units in the header, empty cells for what does not exist.
+//! Comma-separated values (RFC 4180): all digits, units in the header, empty cells for what does not exist.
 
 use crate::{Cell, Column, Table};
 

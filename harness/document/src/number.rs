@@ -3,27 +3,22 @@
 /// 10ᵏ in Unicode superscripts.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
-    let digits = exponent.to_string();
-    let superscript = |c: char| match c {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        _ => '⁰',
+    let superscript = |c: char| match c.to_digit(10) {
+        Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
+        None => '⁻',
     };
-    format!("10{}", digits.chars().map(superscript).collect::<String>())
+    format!("10{}", exponent.to_string().chars().map(superscript).collect::<String>())
 }
 
 /// Three significant digits.
 #[must_use]
 pub fn short(x: f64) -> String {
     rounded(x, 3)
+}
+
+/// The number with six significant digits: more than a figure shows.
+pub(crate) fn drawn(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// A number with its interval, to the second digit of the interval's width: more would say nothing.

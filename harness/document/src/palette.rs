@@ -5,12 +5,14 @@
 //! apart where colour cannot.
 
 use crate::{Block, Content, Document, Role};
+use serde::Serialize;
 
 /// Red, green, blue in sRGB.
 pub(crate) type Rgb = (u8, u8, u8);
 
-/// Outline of a mark. All are closed, so that each can be filled or hollow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Outline of a mark, by its name in the script library. All are closed, so that each can be filled or hollow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum Marker {
     Square,
     Circle,

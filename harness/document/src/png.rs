@@ -18,7 +18,7 @@ fn encode(pixels: &[u8], [width, height]: [usize; 2], colour: ColorType) -> Resu
     let mut encoder = Encoder::new(&mut bytes, side(width)?, side(height)?);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_color(colour);
-    encoder.set_compression(Compression::Best);
+    encoder.set_compression(Compression::Default);
     encoder.set_adaptive_filter(AdaptiveFilterType::Adaptive);
     let mut writer = encoder.write_header().map_err(|error| error.to_string())?;
     writer.write_image_data(pixels).map_err(|error| error.to_string())?;

@@ -35,6 +35,7 @@ pub enum Script {
 /// The first mistake of a document: an id used twice, a row with too few cells, a picture with too few pixels.
 pub fn files(document: &Document, script: Script) -> Result<Vec<File>, String> {
     check::check(document)?;
+    let document = &figure::thinned(document);
     let looks = Looks::of(document);
     let blocks: Vec<&Block> = document.blocks().collect();
     let drawn: Vec<Option<Drawing>> =
@@ -44,8 +45,8 @@ pub fn files(document: &Document, script: Script) -> Result<Vec<File>, String> {
         vec![File::new("index.html", page), File::new(markdown::FILE, markdown::tables(document))];
     for (block, drawing) in blocks.into_iter().zip(drawn) {
         let (id, table) = match block {
-            Block::Chart(chart) => (&chart.id, data::of_chart(chart)),
-            Block::HeatMap(map) => (&map.id, data::of_heat_map(map)),
+            Block::Chart(chart) => (&chart.id, data::rounded(data::of_chart(chart))),
+            Block::HeatMap(map) => (&map.id, data::rounded(data::of_heat_map(map))),
             Block::Table(table) => (&table.id, table.clone()),
             Block::Gallery(gallery) => {
                 let pictures: Vec<_> = gallery.rows.iter().flat_map(|row| &row.pictures).collect();

@@ -65,10 +65,10 @@ pub(super) struct Advantage {
 /// An estimator that was considered.
 #[derive(Debug, Serialize)]
 pub(super) struct Contestant {
-    estimator: &'static str,
+    pub(super) estimator: &'static str,
     /// Variance times look-ups over T², geometric mean over rays.
-    price: f64,
-    how: How,
+    pub(super) price: f64,
+    pub(super) how: How,
 }
 
 /// Source of a price.
@@ -81,15 +81,9 @@ pub(super) enum How {
     Trial,
 }
 
-impl Advantage {
-    fn of(gain: &Gain) -> Self {
-        Self { value: gain.mean, interval: gain.interval, worst: gain.worst }
-    }
-}
-
-impl Contestant {
-    pub(super) fn of(estimator: &'static str, log_price: f64, how: How) -> Self {
-        Self { estimator, price: log_price.exp(), how }
+impl From<Gain> for Advantage {
+    fn from(Gain { mean, interval, worst, .. }: Gain) -> Self {
+        Self { value: mean, interval, worst }
     }
 }
 
@@ -119,8 +113,8 @@ impl Advice {
             relative_standard_error: Spread::of(
                 bouts.iter().map(|bout| bout.relative_variance.sqrt()).collect(),
             ),
-            gain_per_lookup: Advantage::of(&per_lookup),
-            gain_per_second: Advantage::of(&per_second),
+            gain_per_lookup: per_lookup.into(),
+            gain_per_second: per_second.into(),
         }
     }
 }
@@ -187,7 +181,12 @@ impl Answer {
 
     /// The meaning of the columns, and what is not certain.
     pub(super) fn notes(&self) -> String {
-        let mut notes = "\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n".to_owned();
+        let mut notes = format!(
+            "\nmedians over the rays; gain: efficiency over that of ratio tracking, geometric mean with its 95 % interval\n\
+             all rays are random and below the majorant of the whole medium, {:.4}; harness report --vdb takes one ray through the middle of a \
+             volume, below a majorant of its own, where another estimator may lead\n",
+            self.majorant
+        );
         if self.uncertified > 0 {
             let (count, rays) = (self.uncertified, self.rays);
             notes.push_str(&format!(

@@ -100,7 +100,12 @@ pub(super) fn answer(
         })
         .collect();
     advice.sort_by(|a, b| b.gain_per_lookup.value.total_cmp(&a.gain_per_lookup.value));
-    let contestants = expected.iter().map(|e| Contestant::of(e.entrant.name, e.log_price, e.how)).collect();
+    let contestant = |Expected { entrant, log_price, how }: &Expected| Contestant {
+        estimator: entrant.name,
+        price: log_price.exp(),
+        how: *how,
+    };
+    let contestants = expected.iter().map(contestant).collect();
     let provenance = question.provenance(environment, seed)?;
     Ok(Answer::new(&question.name, set, advice, contestants, provenance))
 }

@@ -89,10 +89,7 @@ pub fn chords(
     least: f64,
     seed: u64,
 ) -> Result<Vec<AnyProfile>, Failure> {
-    let (centre, radius) = match *bounds {
-        Bounds::Sphere { center, radius } => (center, radius),
-        Bounds::Box { min, max } => (0.5 * (min + max), 0.5 * (max - min).length()),
-    };
+    let (centre, radius) = bounds.enclosing_ball();
     let mut source = Seeded::new(seed);
     let mut chords = Vec::new();
     /// A medium whose bounds are missed by more rays than this in a row has none to speak of.

@@ -106,6 +106,20 @@ pub(super) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (moments.mean().unwrap_or(f64::NAN), moments.standard_error().unwrap_or(f64::NAN))
 }
 
+/// "0.93 (0.8 to 1)": a value and the range of those that cannot be told from it, where it has a width.
+pub(super) fn with_range(value: f64, [low, high]: [f64; 2]) -> String {
+    if low < high { format!("{value} ({low} to {high})") } else { value.to_string() }
+}
+
+/// The sentence on the optimum of a curve at `value`, and on the range of values that cannot be told from it.
+pub(super) fn optimum_caption(subject: &str, value: f64, [low, high]: [f64; 2]) -> String {
+    let rest = match low < high {
+        true => format!("values from {low} to {high} cannot be told from it"),
+        false => "no other value that was measured is as good".to_owned(),
+    };
+    format!("{subject} at σ_samp = {value}; {rest}.")
+}
+
 /// The element of the least `price`, and the least and greatest `place` of those whose price cannot be told from it.
 ///
 /// # Panics
@@ -121,6 +135,14 @@ pub(super) fn least<T>(elements: &[T], price: fn(&T) -> &Measured, place: fn(&T)
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_range_is_told_where_it_has_a_width() {
+        assert_eq!(with_range(0.93, [0.8, 1.0]), "0.93 (0.8 to 1)");
+        assert_eq!(with_range(1.0, [1.0, 1.0]), "1");
+        let alone = optimum_caption("The least error is", 0.6, [0.6, 0.6]);
+        assert_eq!(alone, "The least error is at σ_samp = 0.6; no other value that was measured is as good.");
+    }
 
     #[test]
     fn an_interval_of_twelve_is_that_of_eleven_degrees() {

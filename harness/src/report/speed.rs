@@ -65,7 +65,7 @@ pub(super) fn compare(
         by_seconds.push(Curve::joined(name, seconds));
     }
     let section = Section::new("speed", "Speed against error")
-        .with(text.to_owned())
+        .with(text)
         .with(chart("speed-lookups", "Error against look-ups", "look-ups per pixel [1]", by_lookups))
         .with(chart("speed-seconds", "Error against time", "CPU seconds of an image [s]", by_seconds))
         .with(table(&efficiencies));

@@ -61,10 +61,11 @@ impl Stretch {
         (self.low..=self.high).contains(&place)
     }
 
-    /// About `count` places with their labels.
+    /// About `count` places with their labels; none for none.
     pub(crate) fn ticks(&self, count: usize) -> Vec<(f64, String)> {
         let span = self.high - self.low;
         match self.scale {
+            _ if count == 0 => Vec::new(),
             Scale::Linear => {
                 let step = nice_step(span / count as f64);
                 let decimals = usize::try_from((-step.log10().floor()).max(0.0) as i64).unwrap_or(0);
@@ -72,7 +73,7 @@ impl Stretch {
                     .map(|(_, place)| (place, format!("{place:.decimals$}").replace('-', "−")))
                     .collect()
             }
-            Scale::Logarithmic if span > 1.6 => {
+            Scale::Logarithmic if span > 2.2 => {
                 let step = (span / count as f64).ceil().max(1.0);
                 self.multiples(step).map(|(_, place)| (place, power_of_ten(place.round() as i32))).collect()
             }
@@ -85,8 +86,14 @@ impl Stretch {
                     .map(|(digit, power)| (f64::from(digit) * power, power))
                     .filter(|(value, _)| self.contains(value.log10()))
                     .map(|(value, power)| {
-                        let decimals = usize::try_from((-power.log10().floor()).max(0.0) as i64).unwrap_or(0);
-                        (value.log10(), format!("{value:.decimals$}"))
+                        let exponent = power.log10().round() as i32;
+                        let decimals = usize::try_from(-exponent).unwrap_or(0);
+                        let label = if (-3..5).contains(&exponent) {
+                            format!("{value:.decimals$}")
+                        } else {
+                            format!("{}·{}", (value / power).round(), power_of_ten(exponent))
+                        };
+                        (value.log10(), label)
                     })
                     .collect()
             }
@@ -125,6 +132,9 @@ mod tests {
         assert_eq!(labels(decades), ["10⁻²", "10⁻¹", "10⁰", "10¹", "10²", "10³"]);
         let short = Stretch::of(&Axis::logarithmic("").within(0.13, 3.0), []);
         assert_eq!(labels(short), ["0.2", "0.5", "1", "2"]);
+        let small = Stretch::of(&Axis::logarithmic("").within(1e-8, 3e-8), []);
+        assert_eq!(labels(small), ["1·10⁻⁸", "2·10⁻⁸", "3·10⁻⁸"]);
+        assert!(Stretch::of(&Axis::linear(""), []).ticks(0).is_empty());
         let negative = Stretch::of(&Axis::linear("").within(-10.0, 10.0), []);
         assert_eq!(labels(negative), ["−10", "−5", "0", "5", "10"]);
     }

@@ -114,8 +114,9 @@ impl<'a> Drawn<'a> {
         entries
     }
 
-    fn entry_count(&self) -> usize {
-        self.entries::<SVGBackend<'_>>().len()
+    fn legend_height(&self) -> u32 {
+        let words: Vec<&str> = self.entries::<SVGBackend<'_>>().iter().map(|entry| entry.1).collect();
+        legend_height(&words)
     }
 }
 
@@ -170,11 +171,11 @@ impl Figure for Drawn<'_> {
             Arrangement::Row => ROW,
             Arrangement::Column => COLUMN * self.chart.panels.len() as u32,
         };
-        (WIDTH, panels + legend_height(self.entry_count()))
+        (WIDTH, panels + self.legend_height())
     }
 
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Outcome<DB> {
-        let height = self.size().1 - legend_height(self.entry_count());
+        let height = self.size().1 - self.legend_height();
         let (panels, below) = area.split_vertically(height);
         let count = self.chart.panels.len();
         let places = match self.chart.arrangement {
@@ -199,7 +200,8 @@ impl Drawn<'_> {
             if !row || first { &*panel.y.title } else { "" },
         ];
         let mut builder = ChartBuilder::on(area);
-        builder.margin(10).margin_right(20);
+        // The label of a tick at the upper end is half above it.
+        builder.margin(10).margin_top(18).margin_right(20);
         if !panel.heading.is_empty() {
             builder.caption(&panel.heading, (FONT, LETTERS + 2, FontStyle::Bold));
         }
@@ -241,14 +243,13 @@ impl Drawn<'_> {
         for curve in panel.curves.iter().rev() {
             let look = self.look(curve);
             let ink = colour(look.colour);
-            for it in &curve.marks {
-                let (at, marker) = placed(it, panel, [x, y], look.marker);
-                if let Some(interval) = it.interval.filter(|_| at.1 == on(&panel.y, it.y)) {
-                    let end = |end: f64| on(&panel.y, end).max(y.low).min(y.high);
-                    let ends = interval.map(end);
-                    context
-                        .draw_series([PathElement::new(ends.map(|end| (at.0, end)), ink.stroke_width(2))])?;
-                }
+            let marks = || curve.marks.iter().map(|it| (it, placed(it, panel, [x, y], look.marker)));
+            for (it, (at, _)) in marks().filter(|(it, (at, _))| at.1 == on(&panel.y, it.y)) {
+                let Some(interval) = it.interval else { continue };
+                let ends = interval.map(|end| (at.0, on(&panel.y, end).max(y.low).min(y.high)));
+                context.draw_series([PathElement::new(ends, ink.stroke_width(2))])?;
+            }
+            for (it, (at, marker)) in marks() {
                 context.plotting_area().draw(&mark(marker, at, ink, it.solid))?;
             }
         }

@@ -1,5 +1,6 @@
 //! Numbers behind figures, as tables.
 
+use crate::number::drawn;
 use crate::{Cell, Chart, Content, Grid, HeatMap, Mark, Panel, Table, short};
 
 /// All points of a chart: lines, marks and areas.
@@ -81,6 +82,21 @@ pub(crate) fn of_heat_map(map: &HeatMap) -> Table {
         }
     }
     Table { rows, ..Table::new(&map.id, &map.title, &map.caption, &header) }
+}
+
+/// The same table with as many digits as a figure shows.
+pub(crate) fn rounded(mut table: Table) -> Table {
+    for cell in table.rows.iter_mut().flatten() {
+        match cell {
+            Cell::Number(x) => *x = drawn(*x),
+            Cell::Measured { value, interval } => {
+                *value = drawn(*value);
+                *interval = interval.map(|ends| ends.map(drawn));
+            }
+            _ => {}
+        }
+    }
+    table
 }
 
 fn places<T>(panel: &Grid<T>) -> impl Iterator<Item = (Vec<Cell>, &T)> {

@@ -14,6 +14,8 @@ const ACROSS: usize = 3;
 const HEIGHT: u32 = 380;
 /// Height of the bar of colours in pixels.
 const BAR: u32 = 110;
+/// A run of cells has a number if it is wider than this share of the panel.
+const NARROW: f64 = 0.08;
 /// Cells without a value.
 const MISSING: RGBColor = RGBColor(0xC9, 0xCD, 0xD3);
 
@@ -45,38 +47,28 @@ impl<'a> Drawn<'a> {
         Some((colours, Stretch::of(colours, values)))
     }
 
-    fn cells(&self, k: usize) -> (&'a str, &'a [f64], &'a [f64], Cells) {
-        fn parts<T>(panel: &Grid<T>) -> (&str, &[f64], &[f64]) {
-            (&panel.label, &panel.x, &panel.y)
-        }
+    fn cells(&self, k: usize) -> Cells {
         match &self.map.content {
             Content::Values { colours, panels, .. } => {
-                let panel = &panels[k];
+                let values = &panels[k].values;
                 let scale = self.scale().map(|(_, stretch)| stretch);
                 let shade = |value: &Option<f64>| {
                     let (value, scale) = ((*value)?, scale?);
                     let place = (on(colours, value) - scale.low) / (scale.high - scale.low);
                     (!place.is_nan()).then(|| colour_map::sequential(colour_map::level(place)))
                 };
-                let colours = panel.values.iter().map(shade).collect();
-                let names = vec![None; panel.values.len()];
-                let (label, x, y) = parts(panel);
-                (label, x, y, Cells { colours, names })
+                Cells { colours: values.iter().map(shade).collect(), names: vec![None; values.len()] }
             }
             Content::Names { names, panels, .. } => {
-                let panel = &panels[k];
-                let colours = panel.values.iter().map(|name| name.map(|k| self.name_colour(&names[k])));
-                let (label, x, y) = parts(panel);
-                (label, x, y, Cells { colours: colours.collect(), names: panel.values.clone() })
+                let values = &panels[k].values;
+                let colours = values.iter().map(|name| name.map(|k| self.name_colour(&names[k]))).collect();
+                Cells { colours, names: values.clone() }
             }
         }
     }
 
     fn count(&self) -> usize {
-        match &self.map.content {
-            Content::Values { panels, .. } => panels.len(),
-            Content::Names { panels, .. } => panels.len(),
-        }
+        self.map.content.frames().len()
     }
 
     fn entries<DB: DrawingBackend + 'a>(&self) -> Vec<Entry<'a, DB>> {
@@ -100,7 +92,10 @@ impl<'a> Drawn<'a> {
     fn foot(&self) -> u32 {
         match &self.map.content {
             Content::Values { .. } => BAR,
-            Content::Names { .. } => legend_height(self.entries::<SVGBackend<'_>>().len()),
+            Content::Names { .. } => {
+                let words: Vec<&str> = self.entries::<SVGBackend<'_>>().iter().map(|entry| entry.1).collect();
+                legend_height(&words)
+            }
         }
     }
 
@@ -112,16 +107,10 @@ impl<'a> Drawn<'a> {
 
 /// An axis of a map; it reaches from the first centre to the last where it has no range.
 pub(crate) fn tight(axis: &Axis, map: &HeatMap) -> Axis {
-    fn centres<T>(panels: &[Grid<T>], x: bool) -> Vec<f64> {
-        panels.iter().flat_map(|panel| if x { &panel.x } else { &panel.y }).copied().collect()
-    }
-    let x = *axis == map.x;
-    let centres = match &map.content {
-        Content::Values { panels, .. } => centres(panels, x),
-        Content::Names { panels, .. } => centres(panels, x),
-    };
-    let ends = |[low, high]: [f64; 2], place: f64| [low.min(place), high.max(place)];
-    let [low, high] = centres.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+    let frames = map.content.frames();
+    let centres = frames.iter().flat_map(|(_, x, y)| if *axis == map.x { *x } else { *y });
+    let ends = |[low, high]: [f64; 2], &place: &f64| [low.min(place), high.max(place)];
+    let [low, high] = centres.fold([f64::INFINITY, f64::NEG_INFINITY], ends);
     match axis.range {
         None if low < high => axis.clone().within(low, high),
         _ => axis.clone(),
@@ -152,6 +141,25 @@ fn runs<T: PartialEq + Copy>(row: &[T]) -> Vec<(usize, usize, T)> {
     runs
 }
 
+/// Edges between cells below a level and cells that are not, by the numbers of their columns and rows of edges.
+fn borders(panel: &Grid<Option<f64>>, level: f64) -> Vec<[[usize; 2]; 2]> {
+    let [columns, rows] = [panel.x.len(), panel.y.len()];
+    let is_below =
+        |column: usize, row: usize| panel.values[row * columns + column].map(|value| value < level);
+    let differ = |a: Option<bool>, b: Option<bool>| a.is_some() && b.is_some() && a != b;
+    let mut borders = Vec::new();
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let here = is_below(column, row);
+        if column + 1 < columns && differ(here, is_below(column + 1, row)) {
+            borders.push([[column + 1, row], [column + 1, row + 1]]);
+        }
+        if row + 1 < rows && differ(here, is_below(column, row + 1)) {
+            borders.push([[column, row + 1], [column + 1, row + 1]]);
+        }
+    }
+    borders
+}
+
 /// A number at a point, white on dark colours and black on light ones.
 fn number_at<Coord: Clone + 'static>(number: usize, at: Coord, ground: Rgb) -> Text<'static, Coord, String> {
     let light = u32::from(ground.0) * 3 + u32::from(ground.1) * 6 + u32::from(ground.2) > 1350;
@@ -174,7 +182,7 @@ impl Figure for Drawn<'_> {
             self.panel(k, place)?;
         }
         match self.scale() {
-            Some((axis, stretch)) => bar(&below, axis, stretch),
+            Some((axis, stretch)) => self.bar(&below, axis, stretch),
             None => legend(&below, &self.entries()),
         }
     }
@@ -182,7 +190,7 @@ impl Figure for Drawn<'_> {
 
 impl Drawn<'_> {
     fn panel<DB: DrawingBackend>(&self, k: usize, area: &DrawingArea<DB, Shift>) -> Outcome<DB> {
-        let (label, columns, rows, cells) = self.cells(k);
+        let ((label, columns, rows), cells) = (self.map.content.frames()[k], self.cells(k));
         let stretches = [self.stretch(0), self.stretch(1)];
         let mut builder = ChartBuilder::on(area);
         builder.margin(8).margin_right(14);
@@ -204,6 +212,9 @@ impl Drawn<'_> {
             }
             for (first, length, name) in runs(&cells.names[here]) {
                 let Some(name) = name else { continue };
+                if x[first + length] - x[first] < NARROW * (stretches[0].high - stretches[0].low) {
+                    continue;
+                }
                 let middle = (0.5 * (x[first] + x[first + length]), 0.5 * (y[row] + y[row + 1]));
                 match longest.iter_mut().find(|known| known.0 == name) {
                     Some(known)
@@ -216,41 +227,55 @@ impl Drawn<'_> {
                 }
             }
         }
-        let Content::Names { names, .. } = &self.map.content else { return Ok(()) };
+        let names = match &self.map.content {
+            Content::Values { isolines, panels, .. } => {
+                for ends in isolines.iter().flat_map(|level| borders(&panels[k], *level)) {
+                    let ends = ends.map(|[column, row]| (x[column], y[row]));
+                    context.draw_series([PathElement::new(ends, WHITE.stroke_width(2))])?;
+                }
+                return Ok(());
+            }
+            Content::Names { names, .. } => names,
+        };
         for (name, _, across, up, _) in longest {
             context.draw_series([number_at(name + 1, (across, up), self.name_colour(&names[name]))])?;
         }
         Ok(())
     }
-}
 
-/// The bar of colours with its axis.
-fn bar<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, axis: &Axis, stretch: Stretch) -> Outcome<DB> {
-    let mut builder = ChartBuilder::on(area);
-    builder.margin_left(60).margin_right(60).margin_top(10);
-    let flat = Stretch::of(&Axis::linear("").within(0.0, 1.0), []);
-    let mut context = framed(builder, [stretch, flat], [&axis.title, ""], [8, 1])?;
-    let step = (stretch.high - stretch.low) / f64::from(colour_map::LEVELS);
-    context.draw_series((0..colour_map::LEVELS).map(|level| {
-        let from = stretch.low + f64::from(level) * step;
-        let shade = colour(colour_map::sequential(level));
-        Rectangle::new([(from, 0.0), (from + step, 1.0)], shade.filled())
-    }))?;
-    Ok(())
+    /// The bar of colours with its axis, and the levels at which the panels have lines.
+    fn bar<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        axis: &Axis,
+        stretch: Stretch,
+    ) -> Outcome<DB> {
+        let mut builder = ChartBuilder::on(area);
+        builder.margin_left(60).margin_right(60).margin_top(10);
+        let flat = Stretch::of(&Axis::linear("").within(0.0, 1.0), []);
+        let mut context = framed(builder, [stretch, flat], [&axis.title, ""], [8, 0])?;
+        let step = (stretch.high - stretch.low) / f64::from(colour_map::LEVELS);
+        context.draw_series((0..colour_map::LEVELS).map(|level| {
+            let from = stretch.low + f64::from(level) * step;
+            let shade = colour(colour_map::sequential(level));
+            Rectangle::new([(from, 0.0), (from + step, 1.0)], shade.filled())
+        }))?;
+        let Content::Values { isolines, .. } = &self.map.content else { return Ok(()) };
+        let places = isolines.iter().map(|level| on(axis, *level)).filter(|place| stretch.contains(*place));
+        context
+            .draw_series(places.map(|at| PathElement::new([(at, 0.0), (at, 1.0)], WHITE.stroke_width(2))))?;
+        Ok(())
+    }
 }
 
 /// Content of a heat map, for those who do not see it.
 pub(crate) fn alternative(map: &HeatMap) -> String {
-    let (what, labels): (String, Vec<&str>) = match &map.content {
-        Content::Values { colours, panels, .. } => {
-            (colours.title.clone(), panels.iter().map(|panel| &*panel.label).collect())
-        }
-        Content::Names { names, panels, .. } => (
-            format!("the best of {}", number::listed(names)),
-            panels.iter().map(|panel| &*panel.label).collect(),
-        ),
+    let what = match &map.content {
+        Content::Values { colours, .. } => colours.title.clone(),
+        Content::Names { names, .. } => format!("the best of {}", number::listed(names)),
     };
-    let labels: Vec<&str> = labels.into_iter().filter(|label| !label.is_empty()).collect();
+    let frames = map.content.frames();
+    let labels: Vec<&str> = frames.iter().map(|frame| frame.0).filter(|label| !label.is_empty()).collect();
     let panels = if labels.is_empty() { String::new() } else { format!(" Panels: {}.", labels.join(", ")) };
     format!("{}. Heat map of {what}, over {} and {}.{panels}", map.title, map.x.title, map.y.title)
 }
@@ -265,6 +290,15 @@ mod tests {
         let stretch = Stretch::of(&axis, []);
         assert_eq!(edges(&axis, &[0.0, 2.0, 6.0, 10.0], stretch), [0.0, 1.0, 4.0, 8.0, 10.0]);
         assert_eq!(edges(&axis, &[5.0], stretch), [0.0, 10.0]);
+    }
+
+    #[test]
+    fn a_level_is_crossed_between_cells_that_have_values() {
+        let values = |x: f64, y: f64| (x + y > 0.0).then_some(x * y);
+        let panel = Grid::of("", vec![0.0, 1.0, 2.0], vec![0.0, 1.0], values);
+        // 1 and 2 at the right end of the upper row; no value at the lower left.
+        assert_eq!(borders(&panel, 0.5), [[[1, 1], [2, 1]], [[2, 1], [3, 1]], [[1, 1], [1, 2]]]);
+        assert_eq!(borders(&panel, 9.0).len(), 0);
     }
 
     #[test]

@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 /// Radius of a mark in pixels.
 const RADIUS: f64 = 8.0;
 
-/// The corners of a mark about the origin. Radii are such that all shapes look equally large.
-fn corners(marker: Marker) -> Vec<(i32, i32)> {
+/// The corners of a mark about the origin. Shapes look equally large.
+fn corners(marker: Marker, size: f64) -> Vec<(i32, i32)> {
     // Angles are counted from the right, y points down: −π/2 is up.
     let (radius, count, first) = match marker {
         Marker::Circle => (0.95, 16, 0.0),
@@ -26,7 +26,7 @@ fn corners(marker: Marker) -> Vec<(i32, i32)> {
     let corner = |k: u32| {
         let angle = first + TAU * f64::from(k) / f64::from(count);
         let dent = if marker == Marker::Star && k % 2 == 1 { 0.45 } else { 1.0 };
-        let reach = RADIUS * radius * dent;
+        let reach = size * radius * dent;
         ((reach * angle.cos()).round() as i32, (reach * angle.sin()).round() as i32)
     };
     (0..count).map(corner).collect()
@@ -39,11 +39,12 @@ pub(super) fn mark<'a, DB: DrawingBackend + 'a, Coord: Clone + 'a>(
     colour: RGBColor,
     solid: bool,
 ) -> DynElement<'a, DB, Coord> {
-    let corners = corners(marker);
+    let place = EmptyElement::at(at);
+    if solid {
+        return (place + Polygon::new(corners(marker, RADIUS + 1.0), colour.filled())).into_dyn();
+    }
+    let corners = corners(marker, RADIUS);
     let outline: Vec<(i32, i32)> = corners.iter().chain(&corners[..1]).copied().collect();
-    let fill = if solid { colour } else { WHITE };
-    let mark = EmptyElement::at(at)
-        + Polygon::new(corners, fill.filled())
-        + PathElement::new(outline, colour.stroke_width(2));
-    mark.into_dyn()
+    let line = PathElement::new(outline, colour.stroke_width(2));
+    (place + Polygon::new(corners, WHITE.filled()) + line).into_dyn()
 }

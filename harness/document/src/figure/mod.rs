@@ -6,6 +6,9 @@ mod clip;
 pub(crate) mod data;
 pub(crate) mod heat_map;
 mod mark;
+mod thin;
+
+pub(crate) use thin::thinned;
 
 use crate::palette::{Looks, Rgb};
 use crate::{Chart, HeatMap, png};
@@ -69,7 +72,7 @@ fn drawn(figure: &impl Figure) -> Result<Drawing, String> {
     on_white(figure, &SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area())?;
     let mut pixels = vec![0; 3 * (width * height) as usize];
     on_white(figure, &BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area())?;
-    Ok(Drawing { svg, png: png::colour(&pixels, [width as usize, height as usize])? })
+    Ok(Drawing { svg: joined(&svg), png: png::colour(&pixels, [width as usize, height as usize])? })
 }
 
 fn on_white<DB: DrawingBackend>(figure: &impl Figure, area: &DrawingArea<DB, Shift>) -> Result<(), String> {
@@ -81,22 +84,52 @@ fn on_white<DB: DrawingBackend>(figure: &impl Figure, area: &DrawingArea<DB, Shi
     draw().map_err(|error| error.to_string())
 }
 
+/// The same drawing with neighbouring lines, and neighbouring polygons, of one look as one path each: a dash is an element of 100 letters.
+fn joined(svg: &str) -> String {
+    let mut file = String::with_capacity(svg.len());
+    let mut open = "";
+    for line in svg.lines() {
+        let ends = [("<polyline ", ""), ("<polygon ", "Z")].into_iter().find_map(|(tag, end)| {
+            let (look, points) = line.strip_prefix(tag)?.split_once(" points=\"")?;
+            Some((look, points.strip_suffix(" \"/>")?, end))
+        });
+        let (look, drawn) =
+            ends.map_or(("", line.to_owned()), |(look, points, end)| (look, format!("M{points}{end}")));
+        match (look == open, look.is_empty()) {
+            (true, false) => file.push_str(&drawn),
+            (_, is_else) => {
+                file.push_str(if open.is_empty() { "" } else { "\"/>\n" });
+                file.push_str(&if is_else { drawn + "\n" } else { format!("<path {look} d=\"{drawn}") });
+            }
+        }
+        open = look;
+    }
+    file
+}
+
 /// An entry of a legend: its sign, drawn about a point, and its words.
 type Entry<'a, DB> = (Box<dyn Fn(&DrawingArea<DB, Shift>, (i32, i32)) -> Outcome<DB> + 'a>, &'a str);
 
-/// Columns of a legend of so many entries.
-const COLUMNS: usize = 3;
+/// Columns of a legend with these words: at most three, fewer where words are long.
+fn columns<'a>(words: impl IntoIterator<Item = &'a str>) -> usize {
+    /// Width of a sign with its gaps, and of a letter, in pixels.
+    const SIGN: usize = 76;
+    const LETTER: usize = 10;
+    let longest = words.into_iter().map(|words| words.chars().count()).max().unwrap_or(0);
+    ((WIDTH as usize - 40) / (SIGN + LETTER * longest)).clamp(1, 3)
+}
 
-fn legend_height(entries: usize) -> u32 {
-    entries.div_ceil(COLUMNS) as u32 * LINE as u32 + 16
+fn legend_height(words: &[&str]) -> u32 {
+    words.len().div_ceil(columns(words.iter().copied())) as u32 * LINE as u32 + 16
 }
 
 /// Draws entries in columns, down first.
 fn legend<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, entries: &[Entry<'_, DB>]) -> Outcome<DB> {
-    let rows = entries.len().div_ceil(COLUMNS).max(1);
+    let columns = columns(entries.iter().map(|entry| entry.1));
+    let rows = entries.len().div_ceil(columns).max(1);
     for (k, (sign, words)) in entries.iter().enumerate() {
         let (column, row) = ((k / rows) as i32, (k % rows) as i32);
-        let (x, y) = (36 + column * (WIDTH as i32 - 40) / COLUMNS as i32, LINE / 2 + row * LINE);
+        let (x, y) = (36 + column * (WIDTH as i32 - 40) / columns as i32, LINE / 2 + row * LINE);
         sign(area, (x + 26, y))?;
         words_at(area, words, (x + 64, y), LETTERS)?;
     }
@@ -113,7 +146,8 @@ fn strokes<DB: DrawingBackend>(
 ) -> Outcome<DB> {
     let (size, gap) = dash.unwrap_or((to - from, 1));
     let mut x = from;
-    while x < to {
+    // Half a stroke at the end would look like a dot.
+    while x + size / 2 < to {
         area.draw(&PathElement::new([(x, y), ((x + size).min(to), y)], style))?;
         x += size + gap;
     }

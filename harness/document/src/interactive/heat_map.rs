@@ -1,6 +1,6 @@
 //! Heat maps of the page: cells, contours, a bar of colours or a legend of names.
 
-use super::{axis, common, escaped, finite, subscripts, suffix};
+use super::{HEADED, axis, common, escaped, finite, subscripts, suffix};
 use crate::figure::axis::{Stretch, on};
 use crate::figure::heat_map::tight;
 use crate::palette::{Looks, css};
@@ -11,10 +11,7 @@ use serde_json::{Value, json};
 pub(crate) fn heat_map(map: &HeatMap, looks: &Looks<'_>) -> Value {
     let mut layout = common();
     let mut traces = Vec::new();
-    let labels: Vec<&str> = match &map.content {
-        Content::Values { panels, .. } => panels.iter().map(|panel| &*panel.label).collect(),
-        Content::Names { panels, .. } => panels.iter().map(|panel| &*panel.label).collect(),
-    };
+    let labels: Vec<&str> = map.content.frames().iter().map(|frame| frame.0).collect();
     let columns = labels.len().min(3);
     let rows = labels.len().div_ceil(columns);
     layout["grid"] =
@@ -68,6 +65,7 @@ pub(crate) fn heat_map(map: &HeatMap, looks: &Looks<'_>) -> Value {
         }
     }
     layout["annotations"] = json!(annotations);
+    layout["margin"]["t"] = json!(HEADED);
     (layout["height"], layout["meta"]) = (json!(300 * rows), json!({ "columns": columns }));
     json!({ "data": traces, "layout": layout })
 }
@@ -80,6 +78,8 @@ fn place(layout: &mut Value, map: &HeatMap, (k, columns): (usize, usize), label:
         if k > 0 {
             drawn["matches"] = json!(letter);
         }
+        // Panels of a row share their labels, for which there is no room between them.
+        drawn["showticklabels"] = json!(letter == "x" || k % columns == 0);
         layout[format!("{letter}axis{}", suffix(k))] = drawn;
     }
     let refers = |letter: &str| format!("{letter}{} domain", suffix(k));

@@ -8,8 +8,8 @@ mod heat_map;
 pub(crate) use heat_map::heat_map;
 
 use crate::figure::axis::on;
-use crate::palette::{Dash, Look, Looks, Marker, css};
-use crate::short;
+use crate::number::{drawn, short};
+use crate::palette::{Dash, Look, Looks, css};
 use crate::{Area, Arrangement, Axis, Chart, Curve, Mark, Panel, Role, Scale};
 use serde_json::{Value, json};
 
@@ -22,6 +22,8 @@ pub(crate) fn script() -> String {
     scripts[start..end].to_owned()
 }
 
+/// Height above panels with headings in pixels: the buttons of the library stand over those.
+const HEADED: u32 = 56;
 /// Gap between panels as a share of the whole.
 const GAP: f64 = 0.05;
 
@@ -49,6 +51,7 @@ pub(crate) fn chart(chart: &Chart, looks: &Looks<'_>) -> Value {
         layout[format!("xaxis{}", suffix(k))] = x;
         layout[format!("yaxis{}", suffix(k))] = y;
         if !panel.heading.is_empty() {
+            layout["margin"]["t"] = json!(HEADED);
             annotations.push(heading(&panel.heading, across, up));
         }
         let domain = format!("{} domain", name("y"));
@@ -147,21 +150,6 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-fn symbol(marker: Marker) -> &'static str {
-    match marker {
-        Marker::Square => "square",
-        Marker::Circle => "circle",
-        Marker::Diamond => "diamond",
-        Marker::Hexagon => "hexagon",
-        Marker::TriangleUp => "triangle-up",
-        Marker::TriangleDown => "triangle-down",
-        Marker::Star => "star",
-        Marker::Pentagon => "pentagon",
-        Marker::TriangleLeft => "triangle-left",
-        Marker::TriangleRight => "triangle-right",
-    }
-}
-
 fn dash(dash: Dash) -> &'static str {
     match dash {
         Dash::Solid => "solid",
@@ -171,13 +159,9 @@ fn dash(dash: Dash) -> &'static str {
     }
 }
 
-/// A number to six digits, more than a screen shows; the library takes null for a gap.
+/// A number that is drawn; the library takes null for a gap.
 fn finite(value: f64) -> Value {
-    if value.is_finite() {
-        json!(format!("{value:.5e}").parse::<f64>().unwrap_or(value))
-    } else {
-        Value::Null
-    }
+    if value.is_finite() { json!(drawn(value)) } else { Value::Null }
 }
 
 fn curve_traces(curve: &Curve, panel: &Panel, look: Look, [x, y]: [&str; 2], first: bool) -> Vec<Value> {
@@ -213,9 +197,10 @@ fn curve_traces(curve: &Curve, panel: &Panel, look: Look, [x, y]: [&str; 2], fir
         let mut marks = trace("markers", first && curve.line.is_empty());
         marks["x"] = curve.marks.iter().map(|mark| finite(mark.x)).collect();
         marks["y"] = curve.marks.iter().map(|mark| finite(mark.y)).collect();
+        let symbol = json!(look.marker);
         let symbols = curve.marks.iter().map(|mark| {
             let open = if mark.solid { "" } else { "-open" };
-            format!("{}{open}", symbol(look.marker))
+            format!("{}{open}", symbol.as_str().unwrap_or_default())
         });
         marks["marker"] = json!({ "color": colour, "size": 9, "symbol": symbols.collect::<Vec<_>>(), "line": { "width": 1.5 } });
         let reach = |end: usize| -> Value {

@@ -143,7 +143,7 @@ pub enum Scale {
 }
 
 /// A line, marks, or both, under one name.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Curve {
     /// The name in the legend. The same name has the same look in all figures of a document.
     pub label: String,
@@ -161,13 +161,7 @@ impl Curve {
     /// An empty curve of a method.
     #[must_use]
     pub fn method(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            role: Role::Method,
-            line: Vec::new(),
-            marks: Vec::new(),
-            area: Vec::new(),
-        }
+        Self { label: label.to_owned(), ..Self::default() }
     }
 
     /// Marks of a method, joined by a line.
@@ -210,10 +204,11 @@ impl Curve {
 }
 
 /// Part of a curve in the comparison; it decides its look.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// One of several that are compared.
+    #[default]
     Method,
     /// The yardstick of the others: a dark line.
     Reference,

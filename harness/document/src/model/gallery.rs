@@ -16,6 +16,12 @@ pub struct Gallery {
 }
 
 impl Gallery {
+    /// One image of each measurement, in one row.
+    #[must_use]
+    pub fn of_row(id: &str, title: &str, pictures: Vec<Picture>) -> Self {
+        Self::of_images(id, title, vec![(String::new(), pictures)])
+    }
+
     /// One image of each measurement, in rows with a label.
     #[must_use]
     pub fn of_images(id: &str, title: &str, rows: Vec<(String, Vec<Picture>)>) -> Self {
@@ -26,6 +32,12 @@ impl Gallery {
             caption: "One image of each measurement.".to_owned(),
             rows: rows.collect(),
         }
+    }
+
+    /// The same gallery with this caption.
+    #[must_use]
+    pub fn with_caption(self, caption: &str) -> Self {
+        Self { caption: caption.to_owned(), ..self }
     }
 }
 

@@ -55,6 +55,22 @@ pub enum Content {
     },
 }
 
+/// Label, columns and rows of a panel.
+pub(crate) type Frame<'a> = (&'a str, &'a [f64], &'a [f64]);
+
+impl Content {
+    /// Labels and centres of all panels.
+    pub(crate) fn frames(&self) -> Vec<Frame<'_>> {
+        fn frame<T>(panel: &Grid<T>) -> Frame<'_> {
+            (&panel.label, &panel.x, &panel.y)
+        }
+        match self {
+            Self::Values { panels, .. } => panels.iter().map(frame).collect(),
+            Self::Names { panels, .. } => panels.iter().map(frame).collect(),
+        }
+    }
+}
+
 /// The plane for one case: centres of its cells and their values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Grid<T> {

@@ -15,7 +15,7 @@ pub use table::{Cell, Column, ColumnOf, Table};
 use serde::{Serialize, Serializer};
 
 /// A whole report. All its texts are plain: writers escape as their format asks, and typeset σ_t and its like.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Document {
     /// Origin of the numbers.
     pub provenance: Provenance,
@@ -59,20 +59,7 @@ impl Document {
     /// A document without contents.
     #[must_use]
     pub fn new(name: &str, title: &str, provenance: Provenance) -> Self {
-        Self {
-            provenance,
-            name: name.to_owned(),
-            title: title.to_owned(),
-            summary: Vec::new(),
-            hero: None,
-            quick: false,
-            seconds: 0.0,
-            threads: 1,
-            unsound: Vec::new(),
-            claims: Vec::new(),
-            sections: Vec::new(),
-            looks: Vec::new(),
-        }
+        Self { provenance, name: name.to_owned(), title: title.to_owned(), threads: 1, ..Self::default() }
     }
 
     /// All blocks, in reading order.

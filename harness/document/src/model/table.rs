@@ -38,6 +38,14 @@ impl Table {
     }
 }
 
+impl Table {
+    /// The same table, folded in the page under this line.
+    #[must_use]
+    pub fn folded(self, line: String) -> Self {
+        Self { folded: Some(line), ..self }
+    }
+}
+
 /// A column of a table of T: title, unit, and cell of a row.
 pub type ColumnOf<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
 

@@ -4,7 +4,7 @@ use crate::csv::heading;
 use crate::figure::{data, heat_map::alternative};
 use crate::markdown::words;
 use crate::palette::Looks;
-use crate::{Block, Cell, Chart, Claim, ClaimVerdict, Document, Gallery, Script, Table};
+use crate::{Block, Cell, Chart, Claim, ClaimVerdict, Document, Gallery, Picture, Script, Table};
 use crate::{colour_map, interactive, listed, palette, picture, short};
 use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value, context};
@@ -81,12 +81,9 @@ struct RowView<'a> {
 
 #[derive(Serialize)]
 struct PictureView<'a> {
-    id: &'a str,
-    label: &'a str,
-    lines: Vec<&'a str>,
+    #[serde(flatten)]
+    picture: &'a Picture,
     remarks: Vec<String>,
-    width: usize,
-    height: usize,
 }
 
 #[derive(Serialize)]
@@ -114,8 +111,12 @@ pub(crate) fn html(document: &Document, looks: &Looks<'_>, script: Script) -> Re
         for block in &section.blocks {
             let figures = if section.folded { Script::None } else { script };
             let mut view_of = block_view(block, looks, figures);
-            if let (BlockView::Figure(figure), Script::Embedded) = (&mut view_of, script) {
-                figure.endings = &["csv", "svg", "png"];
+            if let BlockView::Figure(figure) = &mut view_of {
+                // The words of a static figure are small: it has a row of its own.
+                figure.wide |= figures == Script::None && document.hero.as_deref() != Some(figure.id);
+                if script == Script::Embedded {
+                    figure.endings = &["csv", "svg", "png"];
+                }
             }
             match (&view_of, &document.hero) {
                 (BlockView::Figure(figure), Some(id)) if figure.id == id => hero = Some(view_of),
@@ -237,12 +238,7 @@ fn gallery(it: &Gallery) -> GalleryView<'_> {
         pictures: row
             .pictures
             .iter()
-            .map(|each| {
-                let [width, height] = each.resolution;
-                let remarks = picture::remarks(it, each);
-                let lines = each.lines.iter().map(String::as_str).collect();
-                PictureView { id: &each.id, label: &each.label, lines, remarks, width, height }
-            })
+            .map(|each| PictureView { picture: each, remarks: picture::remarks(it, each) })
             .collect(),
     });
     GalleryView {

@@ -14,7 +14,7 @@
     const longest = Math.max(1, ...words.map((name) => name.replace(/<[^>]*>/g, "").length));
     // It begins at the left edge: from within the axes it would end with them.
     const { l, r } = layout.margin;
-    const columns = Math.max(1, Math.floor((width - r) / (52 + 6.2 * longest)));
+    const columns = Math.max(1, Math.floor((width - r) / (52 + 7.2 * longest)));
     const plot = layout.height;
     layout.margin.b = axis + line * Math.ceil(words.length / columns);
     layout.height = plot + layout.margin.t + layout.margin.b;
@@ -48,7 +48,4 @@
     }
   }, { rootMargin: "300px" });
   figures.forEach((figure) => seen.observe(figure));
-
-  // Contents are folded where they would push the answer out of sight.
-  if (window.innerWidth < 1100) document.querySelector("nav details").removeAttribute("open");
 })();

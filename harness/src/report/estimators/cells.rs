@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::report::run::Run;
+use cpu_time::ThreadTime;
 use fairflight_document::{Cell, Section, Table};
 use fairflight_media::{
     AnalyticCosine, BoundCell, BoundGrid, Bounds, BoxBounds, Extinction, InCells, Lattice, Line, Majorant,
@@ -11,7 +12,6 @@ use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::{ClosedForm, JitteredRatioInCells, ResidualCells, Theory};
 use glam::{DAffine3, DVec3};
 use std::hint::black_box;
-use std::time::Instant;
 
 /// Voxels a side of the large volume.
 const SIDE: usize = 256;
@@ -130,7 +130,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
             ("gain", "1", &|row| Cell::Number(row.jittered[1].exp())),
         ],
     );
-    Ok(Section::new("cells", "Majorants and minorants in cells").with(text.to_owned()).with(table))
+    Ok(Section::new("cells", "Majorants and minorants in cells").with(text).with(table))
 }
 
 /// A row for each number of boxes a side.
@@ -145,12 +145,12 @@ fn rows<M: BoxBounds + MediumBreakpoints>(
     let rays = rays(run, medium, bounds)?;
     let corners = corners(medium, bounds);
     let row = |&side: &usize| {
-        let clock = Instant::now();
+        let clock = ThreadTime::now();
         let grid = BoundGrid::build(medium, corners, [side; 3])
             .map_err(|error| Failure::refused(format!("cells: {error}")))?;
         let build = clock.elapsed().as_secs_f64();
         let mut cells = Vec::new();
-        let clock = Instant::now();
+        let clock = ThreadTime::now();
         for ray in (0..ROUNDS).flat_map(|_| &rays) {
             grid.cells_along(ray.local_line(), ray.length(), &mut cells);
             black_box(&cells);

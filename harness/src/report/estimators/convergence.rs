@@ -55,26 +55,20 @@ fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, Prepared)>, Fa
     let facts = facts_of(ray, seed);
     let half = |teeth: u32| (teeth / 2).max(1);
     let rule = fairflight_transmittance::teeth_for(depth);
+    let telescoping =
+        TelescopingSpec { teeth: depth.round() as u32, level_ratio: 0.65, endpoint_matching: false };
+    let progressive = ProgressiveMajorantSpec { start: GUESS * ray.majorant };
     Ok(vec![
         ("hybrid", Prepared::hybrid(&facts.experience, &ray.profile, ray.majorant, Hybrid::USUAL_BUDGET)?),
         ("unbiased ray marching, matched", marching(CombShape::EndpointMatched)?),
         ("unbiased ray marching", marching(CombShape::Uniform)?),
-        (
-            "telescoping",
-            build(
-                TelescopingSpec { teeth: depth.round() as u32, level_ratio: 0.65, endpoint_matching: false }
-                    .into(),
-            )?,
-        ),
+        ("telescoping", build(telescoping.into())?),
         ("jittered ratio, 0.25", build(JitteredRatioSpec::below(ray.majorant, 0.25).into())?),
         ("ratio tracking", build(DoubleParticleSpec::at(ray.majorant, ControlSpec::none()).into())?),
         ("track length", build(WoodcockSpec { majorant: ray.majorant }.into())?),
         ("jackknife (biased)", build(JackknifeSpec { teeth: half(rule) }.into())?),
         ("naive (biased)", build(NaiveSpec { teeth: half(rule) }.into())?),
-        (
-            "progressive majorant (biased)",
-            build(ProgressiveMajorantSpec { start: GUESS * ray.majorant }.into())?,
-        ),
+        ("progressive majorant (biased)", build(progressive.into())?),
     ])
 }
 

@@ -79,8 +79,7 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Part, Failure
             ("look-ups", "1", &|(_, sampled, ..)| Cell::Number(sampled.lookups)),
         ],
     );
-    let section =
-        Section::new("flights", "The companion: jittered free flight").with(text.to_owned()).with(table);
+    let section = Section::new("flights", "The companion: jittered free flight").with(text).with(table);
     Ok(Part { section, unsound })
 }
 

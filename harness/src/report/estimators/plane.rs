@@ -162,7 +162,7 @@ fn results(grid: &Centres, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let overview = Section::new("plane", "The canonical plane: who wins").with("georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
              the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know eight pilots of the same ray, \
              from variates of its own."
-                .to_owned()).with("Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.".to_owned()).with(winners).with(table);
+                .to_owned()).with("Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.").with(winners).with(table);
     let mut prices =
         Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator")
             .folded();

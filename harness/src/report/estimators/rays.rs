@@ -119,8 +119,7 @@ fn chart(arena: &Arena, rows: &[Standing]) -> Chart {
             &format!("Gain over ratio tracking: {}", arena.set.name),
             Axis::linear("estimator, in the order of the table"),
             Axis::logarithmic("gain [1]"),
-        ).with_caption("Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking."
-                .to_owned()).with_curves(vec![
+        ).with_caption("Per look-up and per second, geometric mean with its interval; and the worst ray per look-up. Above 1 is better than ratio tracking.").with_curves(vec![
             curve("per look-up", &|x, row| measured(&row.per_lookup).mark(x)),
             curve("per second", &|x, row| measured(&row.per_second).mark(x)),
             curve("worst ray, per look-up", &|x, row| Mark::at(x, row.per_lookup.worst)),

@@ -4,7 +4,7 @@ use crate::Failure;
 use crate::comparison::{Bout, Effort, TestRay, fight};
 use crate::estimator::{
     AdaptiveRatioSpec, CellsSpec, ControlSpec, DoubleParticleSpec, EstimatorSpec, HybridSpec, JackknifeSpec,
-    JitteredRatioSpec, NaiveSpec, NextFlightKind, NextFlightSpec, PSeriesSpec, Prepared, RegularSpec,
+    JitteredRatioSpec, NaiveSpec, NextFlightKind, NextFlightSpec, PSeriesSpec, RegularSpec,
     ResidualCellsSpec, RouletteSpec, SamplingSpec, TelescopingSpec, UnbiasedRayMarchingSpec, WoodcockSpec,
 };
 use crate::field::AnyProfile;
@@ -35,7 +35,7 @@ struct Figure {
 struct Row {
     name: &'static str,
     ours: bool,
-    estimator: Prepared,
+    spec: EstimatorSpec,
     figure: Option<Figure>,
     /// Where ours differs from the study's.
     remark: &'static str,
@@ -70,14 +70,13 @@ pub(super) fn study(run: &Run<'_>) -> Result<SeedRay, Failure> {
     let ray = ray(run)?;
     let samples = run.quick_or(60_000, 1_000_000);
     let effort = Effort { samples, counted: samples.min(1 << 16), closed: true };
-    let rows = rows(&ray)?;
+    let rows = rows(&ray);
     let bouts: Result<Vec<Bout>, Failure> = rows
         .iter()
         .map(|row| {
             let seed = run.seed(format_args!("seed-ray/{}", row.name));
-            let bout = fight(&ray, &row.estimator, effort, seed);
             run.advance();
-            bout
+            fight(&ray, &row.spec.kind().prepare(&ray.profile)?, effort, seed)
         })
         .collect();
     let bouts = bouts?;
@@ -160,164 +159,88 @@ fn extremes(profile: &AnyProfile) -> (Vec<f64>, Vec<f64>) {
         .unzip()
 }
 
-fn rows(ray: &TestRay) -> Result<Vec<Row>, Failure> {
+fn rows(ray: &TestRay) -> Vec<Row> {
     let mean = ray.truth.optical_thickness / LENGTH;
     let (minorants, majorants) = extremes(&ray.profile);
     let edges: Vec<f64> = (0..=CELLS).map(|i| i as f64 * LENGTH / CELLS as f64).collect();
-    let cells = || CellsSpec::Given {
-        edges: edges.clone(),
-        minorants: minorants.clone(),
-        majorants: majorants.clone(),
-    };
-    let build = |spec: EstimatorSpec| spec.kind().prepare(&ray.profile);
-    let double = |sigma_samp, control| build(DoubleParticleSpec::at(sigma_samp, control).into());
+    let cells = CellsSpec::Given { edges: edges.clone(), minorants, majorants: majorants.clone() };
+    let piecewise = SamplingSpec::PiecewiseConstant { edges, values: majorants };
+    let double = |sigma_samp, control| EstimatorSpec::from(DoubleParticleSpec::at(sigma_samp, control));
+    let constant = |sigma_samp| double(sigma_samp, ControlSpec::constant(mean));
     let explorers = |count, sigma_samp| double(sigma_samp, ControlSpec::through(count));
-    let next_flight = |version| build(NextFlightSpec { majorant: 1.0, version }.into());
-    let series = |version| build(PSeriesSpec { version, pivot: Some(LENGTH) }.into());
+    let next_flight = |version| EstimatorSpec::from(NextFlightSpec { majorant: 1.0, version });
+    let series = |version| EstimatorSpec::from(PSeriesSpec { version, pivot: Some(LENGTH) });
+    let telescoping = |endpoint_matching| {
+        EstimatorSpec::from(TelescopingSpec { teeth: 20, level_ratio: 0.9, endpoint_matching })
+    };
     let comb = |teeth, shape, roulette, segments| {
         let marching = UnbiasedRayMarchingSpec::of(shape, teeth);
-        build(UnbiasedRayMarchingSpec { roulette, segments, ..marching }.into())
+        EstimatorSpec::from(UnbiasedRayMarchingSpec { roulette, segments, ..marching })
     };
-    let usual = RouletteSpec::USUAL;
+    let usual = |teeth, shape| comb(teeth, shape, RouletteSpec::USUAL, 1);
     // The study tuned with the true variance, here that of the closed form: 2.87e-4 for order 3, 1.2e-4 for a fifth of the ray.
     let tuned = |k2: f64| RouletteSpec::Stop(Roulette::tuned(k2).stop_probability());
-    let figure = |variance, rounding, lookups, samples| Some(Figure { variance, rounding, lookups, samples });
-    let published = |name, estimator, figure| Row { name, ours: false, estimator, figure, remark: "" };
-    let ours = |name, estimator, figure| Row { name, ours: true, estimator, figure, remark: "" };
-    Ok(vec![
-        published(
-            "track length",
-            build(WoodcockSpec { majorant: 1.0 }.into())?,
-            figure(29.4, 0.05, 5.21, 1e6),
-        ),
-        published("ratio tracking", double(1.0, ControlSpec::none())?, figure(6.11, 0.005, 20.0, 1e6)),
-        published(
-            "ratio tracking, 20 majorants",
-            build(
-                DoubleParticleSpec {
-                    sigma_samp: SamplingSpec::PiecewiseConstant {
-                        edges: edges.clone(),
-                        values: majorants.clone(),
-                    },
-                    control: ControlSpec::none(),
-                }
-                .into(),
-            )?,
-            figure(12.3, 0.05, 6.7, 1e6),
-        ),
-        published(
-            "residual ratio in 20 cells",
-            build(ResidualCellsSpec { cells: cells(), rate: 1.0 }.into())?,
-            figure(6.54, 0.005, 6.0, 1e6),
-        ),
-        published("next-flight delta", next_flight(NextFlightKind::Delta)?, None),
-        published("next-flight ratio", next_flight(NextFlightKind::Ratio)?, figure(8.97, 0.005, 20.0, 1e6)),
-        published("unidirectional", next_flight(NextFlightKind::Unidirectional)?, None),
-        published("bidirectional", next_flight(NextFlightKind::Bidirectional)?, None),
-        published(
-            "adaptive ratio",
-            build(AdaptiveRatioSpec { majorant: 1.0, floor: 0.1 }.into())?,
-            figure(6.1, 0.05, 13.9, 1e6),
-        ),
-        published("p-series CMF", series(PSeriesVersion::Cmf)?, figure(3.10, 0.005, 33.4, 1e6)),
-        published("p-series cumulative", series(PSeriesVersion::Cumulative)?, figure(3.09, 0.005, 39.0, 1e6)),
-        published("p-series next-flight", series(PSeriesVersion::NextFlight)?, None),
-        published(
-            "residual ratio, mean, rate 1",
-            double(1.0, ControlSpec::constant(mean))?,
-            figure(2.97, 0.005, 20.0, 1e6),
-        ),
-        published(
-            "residual ratio, mean, rate 2",
-            double(2.0, ControlSpec::constant(mean))?,
-            figure(0.991, 0.0005, 40.0, 1e6),
-        ),
-        published("10 + 1 explorers, 10 points", explorers(11, 0.5)?, figure(7.31, 0.005, 21.0, 1e6)),
-        published("16 + 1 explorers, 16 points", explorers(17, 0.8)?, figure(0.919, 0.0005, 33.0, 1e6)),
-        published("24 + 1 explorers, 8 points", explorers(25, 0.4)?, figure(0.0984, 5e-5, 33.0, 1e6)),
-        ours(
-            "jittered ratio, 0.5",
-            build(JitteredRatioSpec::below(1.0, 0.5).into())?,
-            figure(0.272, 0.0005, 51.9, f64::INFINITY),
-        ),
-        ours(
-            "jittered ratio in 20 cells, 0.5",
-            build(JitteredRatioSpec::in_cells(cells(), 0.5).into())?,
-            figure(0.269, 0.0005, 28.4, f64::INFINITY),
-        ),
-        ours(
-            "jittered ratio in 20 cells, 0.25",
-            build(JitteredRatioSpec::in_cells(cells(), 0.25).into())?,
-            figure(0.0619, 5e-5, 41.2, f64::INFINITY),
-        ),
-        Row {
-            remark: "the study cuts off at level 4",
-            ..published(
-                "telescoping",
-                build(TelescopingSpec { teeth: 20, level_ratio: 0.9, endpoint_matching: false }.into())?,
-                figure(0.0487, 5e-5, 22.5, 1e6),
-            )
-        },
-        Row {
-            remark: "the study cuts off at level 4",
-            ..ours(
-                "telescoping, matched",
-                build(TelescopingSpec { teeth: 20, level_ratio: 0.9, endpoint_matching: true }.into())?,
-                figure(0.00110, 5e-6, 24.5, 1e6),
-            )
-        },
-        published(
-            "unbiased ray marching, 8 teeth",
-            comb(8, CombShape::Uniform, usual, 1)?,
-            figure(6.7, 0.05, 10.6, 1e6),
-        ),
-        published(
-            "unbiased ray marching, 15 teeth",
-            comb(15, CombShape::Uniform, usual, 1)?,
-            figure(0.589, 0.0005, 19.8, 1e6),
-        ),
-        published(
-            "unbiased ray marching, 25 teeth",
-            comb(25, CombShape::Uniform, usual, 1)?,
-            figure(0.0271, 5e-5, 33.0, 1e6),
-        ),
+    let of =
+        |samples| move |variance, rounding, lookups| Some(Figure { variance, rounding, lookups, samples });
+    let (figure, closed) = (of(1e6), of(f64::INFINITY));
+    let published = |name, spec, figure| Row { name, ours: false, spec, figure, remark: "" };
+    let ours = |name, spec, figure| Row { ours: true, ..published(name, spec, figure) };
+    let with = |remark, row| Row { remark, ..row };
+    use CombShape::{Bernoulli2, Bernoulli3, EndpointMatched, Periodised, Uniform};
+    use NextFlightKind::{Bidirectional, Delta, Ratio, Unidirectional};
+    let residual = ResidualCellsSpec { cells: cells.clone(), rate: 1.0 }.into();
+    let jittered_in_cells = |epsilon| JitteredRatioSpec::in_cells(cells.clone(), epsilon).into();
+    let cut = "the study cuts off at level 4";
+    let ends = "the study charges 6 look-ups to the ends";
+    let each = "the study tunes each segment by itself";
+    let many_majorants = DoubleParticleSpec { sigma_samp: piecewise, control: ControlSpec::none() }.into();
+    let third = comb(25, Bernoulli3, tuned(3.4e-4), 1);
+    let in_five = comb(5, EndpointMatched, tuned(2.5e-4), 5);
+    let in_single = comb(1, Uniform, tuned(0.05), 25);
+    let adaptive = AdaptiveRatioSpec { majorant: 1.0, floor: 0.1 }.into();
+    let jackknife = |teeth| JackknifeSpec { teeth }.into();
+    let naive = |teeth| NaiveSpec { teeth }.into();
+    vec![
+        published("track length", WoodcockSpec { majorant: 1.0 }.into(), figure(29.4, 0.05, 5.21)),
+        published("ratio tracking", double(1.0, ControlSpec::none()), figure(6.11, 0.005, 20.0)),
+        published("ratio tracking, 20 majorants", many_majorants, figure(12.3, 0.05, 6.7)),
+        published("residual ratio in 20 cells", residual, figure(6.54, 0.005, 6.0)),
+        published("next-flight delta", next_flight(Delta), None),
+        published("next-flight ratio", next_flight(Ratio), figure(8.97, 0.005, 20.0)),
+        published("unidirectional", next_flight(Unidirectional), None),
+        published("bidirectional", next_flight(Bidirectional), None),
+        published("adaptive ratio", adaptive, figure(6.1, 0.05, 13.9)),
+        published("p-series CMF", series(PSeriesVersion::Cmf), figure(3.10, 0.005, 33.4)),
+        published("p-series cumulative", series(PSeriesVersion::Cumulative), figure(3.09, 0.005, 39.0)),
+        published("p-series next-flight", series(PSeriesVersion::NextFlight), None),
+        published("residual ratio, mean, rate 1", constant(1.0), figure(2.97, 0.005, 20.0)),
+        published("residual ratio, mean, rate 2", constant(2.0), figure(0.991, 0.0005, 40.0)),
+        published("10 + 1 explorers, 10 points", explorers(11, 0.5), figure(7.31, 0.005, 21.0)),
+        published("16 + 1 explorers, 16 points", explorers(17, 0.8), figure(0.919, 0.0005, 33.0)),
+        published("24 + 1 explorers, 8 points", explorers(25, 0.4), figure(0.0984, 5e-5, 33.0)),
+        ours("jittered ratio, 0.5", JitteredRatioSpec::below(1.0, 0.5).into(), closed(0.272, 0.0005, 51.9)),
+        ours("jittered ratio in 20 cells, 0.5", jittered_in_cells(0.5), closed(0.269, 0.0005, 28.4)),
+        ours("jittered ratio in 20 cells, 0.25", jittered_in_cells(0.25), closed(0.0619, 5e-5, 41.2)),
+        with(cut, published("telescoping", telescoping(false), figure(0.0487, 5e-5, 22.5))),
+        with(cut, ours("telescoping, matched", telescoping(true), figure(0.00110, 5e-6, 24.5))),
+        published("unbiased ray marching, 8 teeth", usual(8, Uniform), figure(6.7, 0.05, 10.6)),
+        published("unbiased ray marching, 15 teeth", usual(15, Uniform), figure(0.589, 0.0005, 19.8)),
+        published("unbiased ray marching, 25 teeth", usual(25, Uniform), figure(0.0271, 5e-5, 33.0)),
         published(
             "unbiased ray marching, 25 teeth, matched",
-            comb(25, CombShape::EndpointMatched, usual, 1)?,
-            figure(3.59e-4, 5e-7, 35.0, 1e6),
+            usual(25, EndpointMatched),
+            figure(3.59e-4, 5e-7, 35.0),
         ),
-        ours("periodised comb, 25 teeth", comb(25, CombShape::Periodised, usual, 1)?, None),
-        ours("Bernoulli comb 2, 25 teeth", comb(25, CombShape::Bernoulli2, usual, 1)?, None),
-        Row {
-            remark: "the study charges 6 look-ups to the ends",
-            ..ours(
-                "Bernoulli comb 3, 25 teeth, tuned",
-                comb(25, CombShape::Bernoulli3, tuned(3.4e-4), 1)?,
-                figure(3.51e-4, 5e-7, 31.7, 1e6),
-            )
-        },
-        Row {
-            remark: "the study tunes each segment by itself",
-            ..ours(
-                "5 segments of 5 teeth, matched, tuned",
-                comb(5, CombShape::EndpointMatched, tuned(2.5e-4), 5)?,
-                figure(1.49e-3, 5e-6, 31.5, 2.5e5),
-            )
-        },
-        ours("25 segments of one tooth, tuned", comb(1, CombShape::Uniform, tuned(0.05), 25)?, None),
-        published(
-            "jackknife, 2 x 8 (biased)",
-            build(JackknifeSpec { teeth: 8 }.into())?,
-            figure(0.74, 0.005, 16.0, 1e6),
-        ),
-        published(
-            "jackknife, 2 x 25 (biased)",
-            build(JackknifeSpec { teeth: 25 }.into())?,
-            figure(0.0136, 5e-5, 50.0, 1e6),
-        ),
-        published("naive, 8 teeth (biased)", build(NaiveSpec { teeth: 8 }.into())?, None),
-        published("naive, 25 teeth (biased)", build(NaiveSpec { teeth: 25 }.into())?, None),
-        published("regular tracking", build(RegularSpec {}.into())?, None),
-        ours("hybrid", build(HybridSpec { majorant: Some(1.0) }.into())?, None),
-    ])
+        ours("periodised comb, 25 teeth", usual(25, Periodised), None),
+        ours("Bernoulli comb 2, 25 teeth", usual(25, Bernoulli2), None),
+        with(ends, ours("Bernoulli comb 3, 25 teeth, tuned", third, figure(3.51e-4, 5e-7, 31.7))),
+        with(each, ours("5 segments of 5 teeth, matched, tuned", in_five, of(2.5e5)(1.49e-3, 5e-6, 31.5))),
+        ours("25 segments of one tooth, tuned", in_single, None),
+        published("jackknife, 2 x 8 (biased)", jackknife(8), figure(0.74, 0.005, 16.0)),
+        published("jackknife, 2 x 25 (biased)", jackknife(25), figure(0.0136, 5e-5, 50.0)),
+        published("naive, 8 teeth (biased)", naive(8), None),
+        published("naive, 25 teeth (biased)", naive(25), None),
+        published("regular tracking", RegularSpec {}.into(), None),
+        ours("hybrid", HybridSpec { majorant: Some(1.0) }.into(), None),
+    ]
 }

@@ -130,35 +130,19 @@ fn all<F: SpectralOpticalThickness<N> + Sync, const N: usize>(
         coefficients.iter().map(|&sigma| constant(sigma)).collect();
     let majorants: [Constant; N] =
         majorants?.try_into().map_err(|_| Failure::refused("spectral: a majorant per wavelength"))?;
+    let densest = thickness.into_iter().fold(0.0, f64::max) / field.length();
+    let separate = SeparateSolve::new(majorants);
+    let max = SpectralTracking::new(MaxScheme, constant(greatest)?);
+    let average = SpectralTracking::new(AverageScheme, constant(greatest)?);
+    let hero = HeroWavelength::new(constant(greatest)?);
+    let shared = SharedDistance::new(constant(densest)?);
     let go = |name: &str| (flights.0, named_seed(flights.1, name));
     Ok(vec![
-        ("separate solves", score(field, thickness, &SeparateSolve::new(majorants), go("separate solves"))),
-        (
-            "spectral tracking, max scheme",
-            score(field, thickness, &SpectralTracking::new(MaxScheme, constant(greatest)?), go("max scheme")),
-        ),
-        (
-            "spectral tracking, average scheme",
-            score(
-                field,
-                thickness,
-                &SpectralTracking::new(AverageScheme, constant(greatest)?),
-                go("average scheme"),
-            ),
-        ),
-        (
-            "hero wavelength",
-            score(field, thickness, &HeroWavelength::new(constant(greatest)?), go("hero wavelength")),
-        ),
-        (
-            BASELINE,
-            score(
-                field,
-                thickness,
-                &SharedDistance::new(constant(thickness.into_iter().fold(0.0, f64::max) / field.length())?),
-                go(BASELINE),
-            ),
-        ),
+        ("separate solves", score(field, thickness, &separate, go("separate solves"))),
+        ("spectral tracking, max scheme", score(field, thickness, &max, go("max scheme"))),
+        ("spectral tracking, average scheme", score(field, thickness, &average, go("average scheme"))),
+        ("hero wavelength", score(field, thickness, &hero, go("hero wavelength"))),
+        (BASELINE, score(field, thickness, &shared, go(BASELINE))),
     ])
 }
 
@@ -171,10 +155,8 @@ pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
          wavelengths.";
     let (table, unsound) = tinted(run, &ray)?;
     run.advance();
-    let section = Section::new("spectral", "Several wavelengths at once")
-        .with(text.to_owned())
-        .with(two(run, &ray)?)
-        .with(table);
+    let section =
+        Section::new("spectral", "Several wavelengths at once").with(text).with(two(run, &ray)?).with(table);
     Ok(Part { section, unsound })
 }
 

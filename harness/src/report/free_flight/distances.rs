@@ -3,6 +3,7 @@
 use crate::Failure;
 use crate::report::measured::Measured;
 use crate::report::run::Run;
+use cpu_time::ThreadTime;
 use fairflight_collision::Version;
 use fairflight_document::{Axis, Cell, Chart, Curve, Section, Table};
 use fairflight_freeflight::{Flight, FreeFlight, Newton, Tracking, Woodcock};
@@ -10,7 +11,6 @@ use fairflight_media::{AnalyticCosine, Constant, Counted, Extinction, OpticalThi
 use fairflight_sources::Seeded;
 use fairflight_stats::Moments;
 use glam::DVec3;
-use std::time::Instant;
 
 /// Cells of the histogram.
 const CELLS: usize = 60;
@@ -63,7 +63,7 @@ fn histogram<'f, E: FreeFlight<&'f Ray<AnalyticCosine>> + FreeFlight<Counted<&'f
     let seed = run.seed(format_args!("distances/{name}"));
     let mut weights = [Moments::new(); CELLS];
     let mut squared_weight = 0.0;
-    let clock = Instant::now();
+    let clock = ThreadTime::now();
     let mut source = Seeded::new(seed);
     for _ in 0..flights {
         let flight = sampler.sample(&ray, &mut source);

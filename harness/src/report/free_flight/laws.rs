@@ -65,5 +65,5 @@ fn section(results: &[(String, CheckResult)]) -> Section {
             ("detectable", "1", &|(_, result)| Cell::maybe(result.detectable_relative_bias)),
         ],
     );
-    Section::new("laws", "The law of every sampler").with(text.to_owned()).with(table)
+    Section::new("laws", "The law of every sampler").with(text).with(table)
 }

@@ -2,6 +2,7 @@
 
 use super::equal_cost::EqualCost;
 use super::versions::{Sweep, Versions};
+use crate::report::measured::with_range;
 use crate::report::speed::Speed;
 use fairflight_document::{Claim, ClaimVerdict};
 
@@ -92,7 +93,7 @@ pub(super) fn s6(noise: &EqualCost) -> Claim {
 pub(super) fn summary(even: &Versions, sun: &Versions, noise: &EqualCost, speed: &Speed) -> Vec<String> {
     let optimum = |sweep: &Sweep| {
         let (best, range) = sweep.optimum();
-        format!("{} at {} ({} to {})", sweep.name, best.sigma_samp, range[0], range[1])
+        format!("{} at {}", sweep.name, with_range(best.sigma_samp, range))
     };
     let all = |versions: &Versions| versions.sweeps.iter().map(optimum).collect::<Vec<_>>().join(", ");
     let (best, range) = noise.optimum();
@@ -103,10 +104,7 @@ pub(super) fn summary(even: &Versions, sun: &Versions, noise: &EqualCost, speed:
             all(even),
             all(sun)
         ),
-        format!(
-            "Best σ_samp in Perlin noise at equal cost: {} ({} to {}).",
-            best.sigma_samp, range[0], range[1]
-        ),
+        format!("Best σ_samp in Perlin noise at equal cost: {}.", with_range(best.sigma_samp, range)),
         format!(
             "Fastest on eq. 21 in an even environment: {}, 1/(MSE · CPU s) = {}.",
             fastest.name,

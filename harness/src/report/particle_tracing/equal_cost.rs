@@ -2,7 +2,7 @@
 
 use super::{REPLICAS, scenes};
 use crate::Failure;
-use crate::report::measured::{Measured, least};
+use crate::report::measured::{Measured, least, optimum_caption};
 use crate::report::replicas::Replicas;
 use crate::report::run::Run;
 use fairflight_document::{Axis, Band, Cell, Chart, Curve, Gallery, Section, Table, Vertical};
@@ -82,10 +82,7 @@ fn section(points: &[Point], budget: f64, resolution: u32) -> Section {
         Axis::logarithmic("σ_samp [1/length]"),
         Axis::logarithmic("RMSE [radiance]"),
     )
-    .with_caption(format!(
-        "The least error is at σ_samp = {}; values from {} to {} cannot be told from it.",
-        best.sigma_samp, range[0], range[1]
-    ))
+    .with_caption(optimum_caption("The least error is", best.sigma_samp, range))
     .with_curves(vec![Curve::joined(
         "adaptive",
         points.iter().map(|point| point.rmse.mark(point.sigma_samp)),
@@ -112,10 +109,9 @@ fn section(points: &[Point], budget: f64, resolution: u32) -> Section {
         point.image.picture(format!("noise-{sigma_samp}"), format!("σ_samp {sigma_samp}"), lines, 1.0)
     };
     let shown = points.iter().filter(|point| SHOWN.contains(&point.sigma_samp)).map(picture);
-    let row = (String::new(), shown.collect());
     Section::new("noise", &format!("Fig. 7: Perlin noise at {budget} look-ups per pixel"))
         .with(text)
         .with(chart)
         .with(table)
-        .with(Gallery::of_images("noise-images", "The images", vec![row]))
+        .with(Gallery::of_row("noise-images", "The images", shown.collect()))
 }

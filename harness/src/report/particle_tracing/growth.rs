@@ -119,8 +119,7 @@ fn section(rows: &[Row]) -> Section {
         Axis::logarithmic("growth per collision [1]"),
     )
     .with_caption(
-        "Albedo 0.7, non-terminating. Above 1 there is no second moment. The line is (a r + |1 − r|)²."
-            .to_owned(),
+        "Albedo 0.7, non-terminating. Above 1 there is no second moment. The line is (a r + |1 − r|)².",
     )
     .with_curves(media.into_iter().map(curve).chain([one]).collect())
     .with_verticals(vec![Vertical { x: 0.85, label: "r = 2/(1 + a)".to_owned() }]);
@@ -141,5 +140,5 @@ fn section(rows: &[Row]) -> Section {
             }),
         ],
     );
-    Section::new("growth", "Where a walk has a second moment").with(text.to_owned()).with(chart).with(table)
+    Section::new("growth", "Where a walk has a second moment").with(text).with(chart).with(table)
 }

@@ -2,7 +2,7 @@
 
 use super::{REPLICAS, scenes};
 use crate::Failure;
-use crate::report::measured::{Measured, least};
+use crate::report::measured::{Measured, least, optimum_caption};
 use crate::report::replicas::{Replicas, Subject};
 use crate::report::run::Run;
 use fairflight_document::{Axis, Band, Cell, Chart, Curve, Gallery, Mark, Section, Table, Vertical};
@@ -159,10 +159,7 @@ fn section(run: &Run<'_>, lighting: &Lighting, sweeps: &[Sweep]) -> Section {
         Axis::logarithmic("1/(MSE · look-ups) [1/radiance²]"),
         |point| point.merit().mark(point.sigma_samp),
     )
-    .with_caption(format!(
-        "The adaptive version has its optimum at σ_samp = {}; values from {} to {} cannot be told from it.",
-        best.sigma_samp, range[0], range[1]
-    ))
+    .with_caption(optimum_caption("The adaptive version has its optimum", best.sigma_samp, range))
     .with_bands(Band::between(range, "optimum, adaptive").into_iter().collect());
     Section::new(&id("versions"), &format!("Fig. 6: three versions under {}", lighting.words))
         .with(text)
@@ -210,9 +207,6 @@ fn gallery(id: &str, lighting: &Lighting, sweeps: &[Sweep]) -> Gallery {
         let shown = SHOWN.iter().filter_map(|&sigma_samp| sweep.at(sigma_samp));
         (sweep.name.to_owned(), shown.map(picture).collect())
     };
-    Gallery {
-        caption: "One image of each measurement. Below σ_samp = 1 energies grow and turn negative: bright and black specks."
-            .to_owned(),
-        ..Gallery::of_images(id, "The images", sweeps.iter().map(row).collect())
-    }
+    let caption = "One image of each measurement. Below σ_samp = 1 energies grow and turn negative: bright and black specks.";
+    Gallery::of_images(id, "The images", sweeps.iter().map(row).collect()).with_caption(caption)
 }

@@ -2,8 +2,9 @@
 
 use super::POINT;
 use super::equal_cost::{Budget, Study};
+use crate::report::measured::Measured;
 use crate::report::speed::Speed;
-use fairflight_document::{Claim, ClaimVerdict};
+use fairflight_document::{Claim, ClaimVerdict, measured};
 
 /// What the names of the methods that S9 says win begin with: they differ in the number of samples per ray.
 const MIS: &str = "source and scattering";
@@ -63,12 +64,7 @@ pub(super) fn summary(studies: &[Study], speed: &Speed) -> Vec<String> {
         }
     }
     let fastest = speed.fastest();
-    summary.push(format!(
-        "Fastest: {}, 1/(MSE · CPU s) = {:.3e} [{:.3e}, {:.3e}].",
-        fastest.name,
-        fastest.per_second.value,
-        fastest.per_second.interval[0],
-        fastest.per_second.interval[1]
-    ));
+    let Measured { value, interval } = fastest.per_second;
+    summary.push(format!("Fastest: {}, 1/(MSE · CPU s) = {}.", fastest.name, measured(value, interval)));
     summary
 }

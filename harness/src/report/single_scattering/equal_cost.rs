@@ -181,7 +181,7 @@ fn gallery(id: &str, lighting: &Lighting, budget: &Budget, reference: &Reference
             vec![format!("RMSE {:.4}", entry.rmse.value), format!("{} rays", entry.image.rays_per_pixel())];
         entry.image.picture(format!("{id}-{m}"), entry.name, lines, lighting.exposure)
     });
-    let row = (String::new(), [exact].into_iter().chain(others).collect());
+    let pictures = [exact].into_iter().chain(others).collect();
     let title = format!("The images at {} look-ups per pixel", budget.lookups);
-    Gallery::of_images(&format!("{id}-images"), &title, vec![row])
+    Gallery::of_row(&format!("{id}-images"), &title, pictures)
 }

@@ -11,6 +11,12 @@ pub(super) struct Method {
     pub(super) is_baseline: bool,
 }
 
+impl Method {
+    fn unbiased(name: &'static str, integrator: Value) -> Self {
+        Self { name, integrator, is_baseline: false }
+    }
+}
+
 /// Greatest extinction: the tightest constant majorant.
 const MAJORANT: f64 = 1.0;
 
@@ -25,23 +31,17 @@ fn shadow() -> Value {
 }
 
 fn sampled(name: &'static str, sampling: &str, samples: u32) -> Method {
-    Method {
-        name,
-        integrator: json!({ "kind": "single_scattering", "sampling": sampling, "samples_per_ray": samples,
-                            "estimator": tracked(), "shadow": shadow(), "shared_explorers": 4 }),
-        is_baseline: false,
-    }
+    let integrator = json!({ "kind": "single_scattering", "sampling": sampling, "samples_per_ray": samples,
+                             "estimator": tracked(), "shadow": shadow(), "shared_explorers": 4 });
+    Method::unbiased(name, integrator)
 }
 
 /// Flights through the majorant, as many as `splits` per ray.
 fn flights(name: &'static str, splits: u32) -> Method {
-    Method {
-        name,
-        integrator: json!({ "kind": "single_scattering", "sampling": "attenuation", "samples_per_ray": 1,
-                            "estimator": { "kind": "line_integral", "majorant": MAJORANT, "splits": splits },
-                            "shadow": { "kind": "woodcock", "majorant": MAJORANT } }),
-        is_baseline: false,
-    }
+    let integrator = json!({ "kind": "single_scattering", "sampling": "attenuation", "samples_per_ray": 1,
+                             "estimator": { "kind": "line_integral", "majorant": MAJORANT, "splits": splits },
+                             "shadow": { "kind": "woodcock", "majorant": MAJORANT } });
+    Method::unbiased(name, integrator)
 }
 
 /// A Riemann sum whose `steps`, on the camera ray and on each of its shadow rays, spend `budget` look-ups.
@@ -49,12 +49,9 @@ fn marching(budget: f64) -> Method {
     // n + n² = budget, on the rays that meet the medium.
     let steps = ((budget + 0.25).sqrt() - 0.5).round().max(1.0) as u32;
     let estimator = json!({ "kind": "ray_marching", "steps": steps, "jitter": false });
-    Method {
-        name: "ray marching (biased)",
-        integrator: json!({ "kind": "single_scattering", "sampling": "attenuation", "samples_per_ray": 1,
-                            "estimator": estimator }),
-        is_baseline: true,
-    }
+    let integrator = json!({ "kind": "single_scattering", "sampling": "attenuation", "samples_per_ray": 1,
+                             "estimator": estimator });
+    Method { name: "ray marching (biased)", integrator, is_baseline: true }
 }
 
 /// All methods of fig. 12; the baseline for a ray that may spend `budget` look-ups.
@@ -75,10 +72,7 @@ pub(super) fn all(budget: f64) -> Vec<Method> {
 
 /// Transmittance in closed form, which no look-up buys: what remains is the sampling of distances.
 pub(super) fn closed_form(name: &'static str, samples: u32) -> Method {
-    Method {
-        name,
-        integrator: json!({ "kind": "single_scattering", "sampling": "source_and_scattering", "samples_per_ray": samples,
-                            "estimator": { "kind": "regular" }, "shared_explorers": 4 }),
-        is_baseline: false,
-    }
+    let integrator = json!({ "kind": "single_scattering", "sampling": "source_and_scattering", "samples_per_ray": samples,
+                             "estimator": { "kind": "regular" }, "shared_explorers": 4 });
+    Method::unbiased(name, integrator)
 }

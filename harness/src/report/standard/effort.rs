@@ -56,11 +56,11 @@ impl Effort {
     }
 }
 
-/// The fewest and the most samples of a point, as powers of two: a whole batch, and some seconds of the cheapest field.
+/// The fewest and the most samples of a point that need not be more, as powers of two: a whole batch, and some seconds of the cheapest field.
 const SAMPLES: (u32, u32) = (12, 22);
 
-/// Of how many samples of a point the look-ups are counted: known to a percent.
-pub(super) const COUNTED: u64 = 1 << 13;
+/// Of how many samples of a point the look-ups are counted: known to two percent, for what is about as much as drawing a cheap point.
+pub(super) const COUNTED: u64 = 1 << 11;
 
 impl Effort {
     /// True if the i-th point of a sweep is measured: every other one where the estimator is not of the papers.
@@ -71,11 +71,11 @@ impl Effort {
     }
 }
 
-/// The samples that fit into `seconds`, or the `needed` ones if these fit into `at_most` seconds.
+/// The samples that fit into `seconds`, or the `needed` ones, in whole batches, if these fit into `at_most` seconds.
 pub(super) fn samples_to_test(seconds: f64, at_most: f64, nanoseconds: f64, needed: f64) -> u64 {
     let usual = samples_within(seconds, nanoseconds);
     if needed <= samples_within(at_most, nanoseconds) as f64 {
-        usual.max((needed.ceil() as u64).next_power_of_two())
+        usual.max((needed.ceil() as u64).next_multiple_of(1 << SAMPLES.0))
     } else {
         usual
     }
@@ -105,6 +105,6 @@ mod tests {
     #[test]
     fn a_test_is_paid_for_where_it_is_affordable() {
         let samples = |needed| samples_to_test(0.01, 0.1, 1980.0, needed);
-        assert_eq!([f64::INFINITY, 30_000.0, 60_000.0].map(samples), [4096, 32_768, 4096]);
+        assert_eq!([f64::INFINITY, 26_000.0, 60_000.0].map(samples), [4096, 28_672, 4096]);
     }
 }

@@ -48,3 +48,51 @@ fn row(run: &Run<'_>, subject: &Subject, line: &Line) -> Result<EstimatorRow, Fa
         measured,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::laws::SharedLaws;
+    use super::super::result::Series;
+    use super::super::{findings, lines, run_for_tests, subject};
+    use super::*;
+    use crate::comparison::{Bout, TestRay, entrants, facts_of, fight};
+    use crate::field::MediumLibrary;
+    use crate::report::options::Volume;
+    use fairflight_media::Medium;
+
+    /// Variance times look-ups of ratio tracking over those of an entrant, as advice finds it, and its relative standard error.
+    fn gain(ray: &TestRay, name: &str) -> (f64, f64) {
+        let facts = facts_of(ray, 5);
+        let bout = |name: &str| -> Bout {
+            let entrant = entrants().into_iter().find(|entrant| entrant.name == name).unwrap();
+            let effort = crate::comparison::Effort { samples: 8192, counted: 1024, closed: false };
+            fight(ray, &entrant.on(ray, &facts).unwrap(), effort, 6).unwrap()
+        };
+        let (ours, theirs) = (bout(name), bout("ratio tracking"));
+        let price = |bout: &Bout| bout.relative_variance * bout.lookups;
+        let error = |bout: &Bout| bout.variance_error / bout.measured_variance;
+        (price(&theirs) / price(&ours), error(&ours).hypot(error(&theirs)))
+    }
+
+    #[test]
+    fn advice_agrees_on_the_same_ray_and_differs_by_the_majorant() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/fixtures/cloud.vdb").into();
+        let volume = Volume { file, grid: None, scale: 1.0 };
+        let subject = subject::volume(&volume, &MediumLibrary::default()).unwrap();
+        let (run, laws) = (run_for_tests(), SharedLaws::of(&subject));
+        let (lines, _) = lines::all(&run, &subject, &laws, &[]).unwrap();
+        let found = findings::of(&subject, &[], &rows(&run, &subject, &lines).unwrap());
+        let best = &found.per_lookup[0];
+        assert!(matches!(best.series, Series::Entrant(_)));
+        let off = |ray: &TestRay| {
+            let (gain, error) = gain(ray, best.series.label());
+            (gain.ln() - best.gain.unwrap().ln()).abs() / error
+        };
+        let same = off(&subject.ray(subject.majorant));
+        assert!(same < 4.0, "{same} standard errors apart on the same ray");
+        let whole = subject.medium.upper_bound().unwrap();
+        assert!(whole > 2.0 * subject.majorant);
+        let other = off(&subject.ray(whole));
+        assert!(other > 6.0, "only {other} standard errors apart below the majorant of the whole volume");
+    }
+}

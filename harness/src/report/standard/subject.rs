@@ -30,6 +30,9 @@ pub(super) struct Subject {
     pub(super) walk_sampling: f64,
 }
 
+/// The id of a volume that was given.
+pub(super) const VOLUME: &str = "vdb";
+
 /// The seed ray of the analytic medium runs through its center.
 const AXIS: (DVec3, DVec3) = (DVec3::ZERO, DVec3::Z);
 
@@ -91,7 +94,7 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
         .map_or_else(|| "the density, or the only float grid,".to_owned(), |grid| format!("grid {grid}"));
     Subject::new(
         Names {
-            id: "vdb",
+            id: VOLUME,
             title: format!("OpenVDB volume {name}"),
             description: format!(
                 "{grid} of {name}, trilinear, times {scale}; the ray runs through the middle of the bounds along their \
@@ -105,28 +108,13 @@ pub(super) fn volume(volume: &Volume, library: &MediumLibrary) -> Result<Subject
     )
 }
 
-/// The middle of the bounds, and half their diagonal: a ball that holds them.
-pub(super) fn enclosing_ball(bounds: &Bounds) -> (DVec3, f64) {
-    match *bounds {
-        Bounds::Sphere { center, radius } => (center, radius),
-        Bounds::Box { min, max } => (0.5 * (min + max), 0.5 * (max - min).length()),
-    }
-}
-
 fn through_the_middle(bounds: &Bounds) -> (DVec3, DVec3) {
-    let (middle, radius) = enclosing_ball(bounds);
+    let (middle, radius) = bounds.enclosing_ball();
     let extent = match *bounds {
         Bounds::Sphere { .. } => DVec3::Z,
         Bounds::Box { min, max } => max - min,
     };
-    let longest = extent.max_element();
-    let axis = if extent.x == longest {
-        DVec3::X
-    } else if extent.y == longest {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
+    let axis = DVec3::AXES[extent.max_position()];
     (middle - 2.0 * radius * axis, axis)
 }
 

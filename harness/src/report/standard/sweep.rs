@@ -7,7 +7,7 @@ use super::result::{SweepCurve, SweepMeasurement, SweepPoint};
 use super::series::Entry;
 use super::{Effort, Run, Subject};
 use crate::Failure;
-use crate::experiment::{compare, measure_plan};
+use crate::experiment::{compare, measure_plan, variance_is_known};
 use crate::measure::Measurement;
 use crate::parallel::try_in_parallel;
 use crate::plan::Plan;
@@ -103,6 +103,9 @@ fn point(
 
 /// Samples that it takes to test the variance; infinite where no number does.
 pub(super) fn samples_needed(theory: &Theory) -> f64 {
+    if !variance_is_known(theory) {
+        return f64::INFINITY;
+    }
     let closed = closed_moments(theory);
     // Half of the false alarm is the variance's.
     let test = NormalApproximation::for_level(0.5 * DEFAULT_ALPHA);
@@ -240,6 +243,19 @@ mod tests {
             );
             close(point.lookups.unwrap(), result.reference.lookups_per_sample.unwrap());
         }
+    }
+
+    #[test]
+    fn no_samples_are_paid_for_a_variance_that_is_not_known() {
+        let subject = subject::perlin(&MediumLibrary::default()).unwrap();
+        let laws = SharedLaws::of(&subject);
+        let entry = Entry::plain(Series::DoubleParticleExplorers);
+        let spec = entry.at(&subject, subject.majorant);
+        let plan = Plan::on(subject.profile.clone(), spec, 0, 0).unwrap();
+        let theory = laws.law(&subject, &plan.estimator).unwrap().unwrap().theory;
+        assert!(laws.is_rough() && samples_needed(&theory).is_infinite());
+        let settled = Theory { relative_variance_error: 0.0, ..theory };
+        assert!(samples_needed(&settled).is_finite());
     }
 
     #[test]

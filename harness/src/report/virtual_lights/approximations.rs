@@ -132,14 +132,8 @@ fn compare(
         picture("approximate", "approximated", &approximate),
         shown,
     ];
-    let gallery = Gallery {
-        caption: "Orange: the approximation is brighter.".to_owned(),
-        ..Gallery::of_images(
-            &format!("{id}-images"),
-            "Both, and their difference",
-            vec![(String::new(), pictures)],
-        )
-    };
+    let gallery = Gallery::of_row(&format!("{id}-images"), "Both, and their difference", pictures)
+        .with_caption("Orange: the approximation is brighter.");
     let section = Section::new(id, title).with(text).with(gallery);
     Ok(Difference { relative: change, greatest, noise, scale, section })
 }
@@ -174,8 +168,7 @@ fn vertices(run: &Run<'_>) -> Result<(Vec<(f64, f64)>, Section), Failure> {
             ("locally homogeneous", "1", &|(_, [_, local])| Cell::Number(*local)),
         ],
     );
-    let section = Section::new("vertices", "Compensation vertices that a free flight loses")
-        .with(text.to_owned())
-        .with(table);
+    let section =
+        Section::new("vertices", "Compensation vertices that a free flight loses").with(text).with(table);
     Ok((shares.into_iter().map(|(bound, [free, _])| (bound, free)).collect(), section))
 }

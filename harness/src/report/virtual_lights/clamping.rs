@@ -101,14 +101,8 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
         "A cloud of Perlin noise lit by a small lamp, one and the same set of {paths} light paths, {eye_samples} points per eye ray, b = {LOW_BOUND}. Unbounded lights \
          have no second moment in a medium: their error is shown by eye only, an interval would mean nothing."
     );
-    let gallery = Gallery {
-        caption: "Four sets each are averaged for the share of the light; one is shown.".to_owned(),
-        ..Gallery::of_images(
-            "splotches-images",
-            "The same cloud three times",
-            vec![(String::new(), pictures)],
-        )
-    };
+    let gallery = Gallery::of_row("splotches-images", "The same cloud three times", pictures)
+        .with_caption("Four sets each are averaged for the share of the light; one is shown.");
     Ok(Section::new("splotches", "Fig. 2: splotches, or too little light").with(text).with(gallery))
 }
 
@@ -164,14 +158,9 @@ fn energy(run: &Run<'_>, reference: &Reference) -> Result<(Vec<Stage>, Section),
         let image = stage.images.picture(format!("energy-{k}"), "image", Vec::new(), super::EXPOSURE);
         (stage.name.to_owned(), vec![image, difference(k, stage, reference)])
     });
-    let gallery = Gallery {
-        caption: "Differences are those of the mean of all images.".to_owned(),
-        ..Gallery::of_images(
-            "energy-images",
-            "Images, and their difference from the reference",
-            rows.collect(),
-        )
-    };
+    let title = "Images, and their difference from the reference";
+    let gallery = Gallery::of_images("energy-images", title, rows.collect())
+        .with_caption("Differences are those of the mean of all images.");
     let section = Section::new("energy", "Fig. 11: lost energy and overcompensation in the room with smoke")
         .with(text)
         .with(table)
@@ -225,6 +214,6 @@ fn scanline(run: &Run<'_>) -> Result<Section, Failure> {
             "Fig. 4: a scanline",
             Axis::linear("column [pixel]"),
             Axis::linear("radiance [radiance]"),
-        ).with_caption("The middle row of the room. Unbounded lights of one set jump where an eye ray passes near one of them.".to_owned()).with_curves(curves);
+        ).with_caption("The middle row of the room. Unbounded lights of one set jump where an eye ray passes near one of them.").with_curves(curves);
     Ok(Section::new("scanline", "Fig. 4: a scanline").with(text).with(chart))
 }

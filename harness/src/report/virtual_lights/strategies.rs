@@ -116,7 +116,7 @@ pub(super) fn study(run: &Run<'_>, reference: &Reference) -> Result<Strategies, 
         Axis::logarithmic("CPU seconds of an image [s]"),
         Axis::logarithmic("RMSE [radiance]"),
     )
-    .with_caption("Every set of lights is new, so that all fall with the square root of time.".to_owned())
+    .with_caption("Every set of lights is new, so that all fall with the square root of time.")
     .with_curves(curves);
     let text = format!(
         "The room with smoke in gray, without its lamp in the picture, {side} x {side} pixels, sets of {PATHS} light paths, b = {BOUND}, unlimited steps, transmittance and visibility \
@@ -166,5 +166,5 @@ fn gallery(entries: &[Entry], reference: &Reference) -> Gallery {
     };
     let pictures = [exact].into_iter().chain(entries.iter().enumerate().map(of_entry)).collect();
     let title = "Fig. 6: the images at roughly equal time";
-    Gallery::of_images("strategies-images", title, vec![(String::new(), pictures)])
+    Gallery::of_row("strategies-images", title, pictures)
 }

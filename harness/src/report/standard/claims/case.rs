@@ -1,13 +1,14 @@
 //! One measured variance beside its closed form.
 
 use crate::Failure;
-use crate::estimator::EstimatorSpec;
+use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
 use crate::experiment::{compare, measure_plan};
 use crate::field::AnyProfile;
 use crate::plan::Plan;
 use crate::reference::{Truth, predict};
 use crate::report::standard::effort::{COUNTED, samples_to_test};
 use crate::report::standard::sweep::samples_needed;
+use fairflight_collision::{Albedo, Version};
 use fairflight_media::{Constant, Tolerance};
 use fairflight_stats::DEFAULT_ALPHA;
 
@@ -92,6 +93,13 @@ pub(super) fn with_error(value: f64, half_width: f64) -> String {
     }
     let digits = (1.0 - half_width.log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.digits$} ± {half_width:.digits$}")
+}
+
+/// A version of the single particle model without control.
+pub(super) fn single(version: Version, albedo: f64, sigma_samp: f64) -> Result<EstimatorSpec, Failure> {
+    let albedo = Albedo::new(albedo).map_err(Failure::refused)?;
+    let (sigma_samp, control) = (SamplingSpec::Constant(sigma_samp), ControlSpec::none());
+    Ok(SingleParticleSpec { version, albedo, sigma_samp, control }.into())
 }
 
 /// A homogeneous profile.

@@ -33,7 +33,7 @@ pub(super) fn s7(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
             }
         }
         let lowest = study.panels.iter().min_by(|a, b| a.rmse.total_cmp(&b.rmse));
-        midpoints_lowest += usize::from(lowest.is_some_and(|panel| name(panel) == MIDPOINTS));
+        midpoints_lowest += usize::from(lowest.is_some_and(|panel| panel.name == "midpoint marching"));
         parts.push(format!("{} at {}: {}", study.medium, study.budget, panels(study)));
     }
     let verdict = match (won, lost) {
@@ -67,24 +67,8 @@ fn panels(study: &ImageStudy) -> String {
         let [low, high] = panel.rmse_interval;
         format!(
             "{} {:.4} [{low:.4}, {high:.4}] at {:.1} look-ups",
-            name(panel),
-            panel.rmse,
-            panel.lookups_per_pixel
+            panel.name, panel.rmse, panel.lookups_per_pixel
         )
     };
     study.panels.iter().map(one).collect::<Vec<_>>().join(", ")
-}
-
-const MIDPOINTS: &str = "midpoint marching";
-
-fn name(panel: &ImagePanel) -> &str {
-    match panel.series {
-        Series::RayMarching if panel.parameters.contains("midpoints") => MIDPOINTS,
-        Series::RayMarching => "marching with the paper's step",
-        Series::Woodcock => "Woodcock",
-        Series::DoubleParticle => "double particle without control",
-        Series::DoubleParticleExplorers if panel.parameters.contains("borrowed") => "borrowed explorers",
-        Series::DoubleParticleExplorers => "own explorers",
-        _ => "other",
-    }
 }

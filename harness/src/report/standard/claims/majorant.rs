@@ -4,13 +4,12 @@
 //! sampling extinction is within 4 standard errors of that at the majorant, on every medium where both are tested. Of S3: the closed-form
 //! variance falls towards its bound from above and reaches it within 1 %, and the measured one is within 4 standard errors.
 
-use super::case::{Case, closed, with_error};
+use super::case::{Case, closed, single, with_error};
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
-use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
 use crate::parallel::try_in_parallel;
 use crate::report::standard::result::{Series, SweepMeasurement, SweepPoint};
-use fairflight_collision::{Albedo, Version};
+use fairflight_collision::Version;
 use fairflight_document::{Claim, ClaimVerdict};
 
 pub(super) fn s2(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
@@ -102,15 +101,7 @@ pub(super) fn s3(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     // From r of at most 1 down. Near the limit a walk takes thousands of look-ups, and its closed form must do.
     let factors = [1.0, 8.0, 64.0];
     let limit = 512.0;
-    let spec = |albedo: f64, factor: f64| -> Result<EstimatorSpec, Failure> {
-        Ok(SingleParticleSpec {
-            version: Version::NonTerminating,
-            albedo: Albedo::new(albedo).map_err(Failure::refused)?,
-            sigma_samp: SamplingSpec::Constant(subject.majorant * factor),
-            control: ControlSpec::none(),
-        }
-        .into())
-    };
+    let spec = |albedo: f64, factor: f64| single(Version::NonTerminating, albedo, subject.majorant * factor);
     let cases = try_in_parallel(albedos.len() * factors.len(), &|i| {
         let (albedo, factor) = (albedos[i / factors.len()], factors[i % factors.len()]);
         let seed = evidence.seed(format_args!("S3/{albedo}/{factor}"));

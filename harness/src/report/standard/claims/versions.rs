@@ -5,14 +5,13 @@
 //! errors of the difference in at least one case and in no case the other way round. Variance times look-ups is given
 //! beside it, from closed forms over a grid of albedos, ratios and thicknesses.
 
-use super::case::{Case, homogeneous};
+use super::case::{Case, homogeneous, single};
 use super::{Evidence, SIGMAS, claim};
 use crate::Failure;
-use crate::estimator::{ControlSpec, EstimatorSpec, SamplingSpec, SingleParticleSpec};
 use crate::parallel::try_in_parallel;
 use crate::plan::Plan;
 use crate::reference::{Truth, predict};
-use fairflight_collision::{Albedo, Version};
+use fairflight_collision::Version;
 use fairflight_document::{Claim, ClaimVerdict};
 use fairflight_media::Tolerance;
 
@@ -27,7 +26,7 @@ pub(super) fn s4(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     let measured = try_in_parallel(CASES.len() * VERSIONS.len(), &|i| {
         let ((albedo, r), version) = (CASES[i / VERSIONS.len()], VERSIONS[i % VERSIONS.len()]);
         let seed = evidence.seed(format_args!("S4/{albedo}/{r}/{version:?}"));
-        Case::measure(&slab, spec(version, albedo, r)?, seed, evidence.effort.claim_seconds, 5.0)
+        Case::measure(&slab, single(version, albedo, 1.0 / r)?, seed, evidence.effort.claim_seconds, 5.0)
     })?;
 
     let (mut parts, mut for_claim, mut against) = (Vec::new(), 0, 0);
@@ -86,16 +85,6 @@ pub(super) fn s4(evidence: &Evidence<'_>) -> Result<Claim, Failure> {
     ))
 }
 
-fn spec(version: Version, albedo: f64, r: f64) -> Result<EstimatorSpec, Failure> {
-    Ok(SingleParticleSpec {
-        version,
-        albedo: Albedo::new(albedo).map_err(Failure::refused)?,
-        sigma_samp: SamplingSpec::Constant(1.0 / r),
-        control: ControlSpec::none(),
-    }
-    .into())
-}
-
 /// (a − b) in standard errors of the difference.
 fn separation(a: &Case, b: &Case) -> f64 {
     (a.measured - b.measured) / a.error.hypot(b.error)
@@ -129,7 +118,7 @@ fn grid() -> Result<Grid, Failure> {
                     (part, Version::NonTerminating),
                 ] {
                     let law = |version| -> Result<(f64, f64), Failure> {
-                        let plan = Plan::on(slab.clone(), spec(version, albedo, r)?, 0, 0)?;
+                        let plan = Plan::on(slab.clone(), single(version, albedo, 1.0 / r)?, 0, 0)?;
                         let theory = predict(&slab, &plan.estimator, &truth, Tolerance::to(1e-9))?.theory;
                         let variance = theory.log_relative_variance.exp();
                         Ok((variance, variance * theory.lookups))

@@ -3,6 +3,7 @@
 use super::super::findings::{Agreement, Best, Limit};
 use super::super::optimum::{CurveOptima, Place};
 use super::super::result::{MediumReport, Report};
+use super::super::subject::VOLUME;
 use fairflight_document::{listed, short};
 
 /// A paragraph for each.
@@ -14,14 +15,22 @@ pub(super) fn summary(report: &Report) -> Vec<String> {
     if report.media.iter().any(|medium| !medium.findings.limits.is_empty()) {
         summary.push(sampling(report));
     }
+    if report.media.iter().any(|medium| medium.id == VOLUME) {
+        summary.push(RAY_OF_A_VOLUME.to_owned());
+    }
     summary
 }
+
+/// What advice on the same file measures otherwise.
+const RAY_OF_A_VOLUME: &str = "On the volume this is one ray, through its middle and below a majorant of its own, just above its greatest \
+    σ_t. harness advise --vdb and harness report estimators --vdb send random rays through it, all below the greatest σ_t of the whole \
+    volume: their gains are means over those rays, and another estimator may lead.";
 
 fn soundness(report: &Report) -> String {
     let rays: Vec<String> = report
         .media
         .iter()
-        .map(|medium| format!("{} (T = {})", medium.title, short(medium.ray.transmittance)))
+        .map(|medium| format!("{} with T = {}", medium.title, short(medium.ray.transmittance)))
         .collect();
     let mut labels: Vec<&str> = Vec::new();
     for row in report.media.iter().flat_map(|medium| &medium.estimators) {

@@ -125,6 +125,15 @@ mod tests {
     }
 
     #[test]
+    fn a_volume_is_told_apart_from_advice_on_it() {
+        let mut report = fixture::report();
+        let says = |report: &Report| document(report).summary.concat().contains("harness advise --vdb");
+        assert!(!says(&report));
+        report.media[0].id = super::super::subject::VOLUME.to_owned();
+        assert!(says(&report));
+    }
+
+    #[test]
     fn an_empty_report_is_still_a_report() {
         let mut report = fixture::report();
         for medium in &mut report.media {

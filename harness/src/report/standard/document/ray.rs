@@ -75,7 +75,7 @@ pub(super) fn functions(medium: &MediumReport) -> Chart {
     let mut curves = vec![exact.with_area(s.iter().copied().zip(band.iter().copied()))];
     let end = |sample: &[f64]| Some(Mark::at(*s.last()?, *sample.last()?));
     let sampled = |sample: &Vec<f64>| {
-        Curve::method("sampled functions").with_gaps(together(s, sample)).with_marks(end(sample))
+        Curve::method("sampled T(0, s)").with_gaps(together(s, sample)).with_marks(end(sample))
     };
     curves.extend(samples.iter().map(sampled));
     let values = samples.iter().flatten().copied().chain(band.iter().flatten().copied());

@@ -218,9 +218,13 @@ fn efficiency(medium: &MediumReport, cost: Cost) -> Chart {
     let best = competing
         .filter_map(|curve| Some((curve.series, cost.optimum(medium, curve)?)))
         .max_by(|a, b| a.1.log10_efficiency.total_cmp(&b.1.log10_efficiency));
+    let marks = match cost {
+        Cost::Lookups => "A mark is the best of its curve.",
+        Cost::Seconds => "Marks are measured points.",
+    };
     let caption = best.map_or_else(String::new, |(series, best)| {
         format!(
-            "Highest of the unbiased estimators without an oracle: {}, {} at σ_samp = {}{}.",
+            "{marks} Highest of the unbiased estimators without an oracle: {}, {} at σ_samp = {}{}.",
             series.label(),
             short_of_log10(best.log10_efficiency),
             short(best.sigma_samp),

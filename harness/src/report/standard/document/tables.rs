@@ -27,7 +27,7 @@ pub(super) fn estimators(medium: &MediumReport) -> Table {
         caption.push_str(&format!(" Not defined on this ray: {}.", listed(&refused)));
     }
     let count = rows.len();
-    let table = Table::of(
+    Table::of(
         [&format!("{}-estimators", medium.id), "All estimators", &caption],
         rows,
         &[
@@ -49,9 +49,8 @@ pub(super) fn estimators(medium: &MediumReport) -> Table {
                 (false, None) => Cell::Empty,
             }),
         ],
-    );
-    let folded = format!("{count} estimators: variance, look-ups, efficiency per look-up and per second");
-    Table { folded: Some(folded), ..table }
+    )
+    .folded(format!("{count} estimators: variance, look-ups, efficiency per look-up and per second"))
 }
 
 /// The best σ_samp of each curve.
@@ -65,7 +64,8 @@ pub(super) fn optima(medium: &MediumReport) -> Table {
         Some(Place::UpperEnd) => Cell::text("upper end"),
     };
     let inside = |row: &&CurveOptima| row.per_lookup.is_some_and(|best| best.place == Place::Inside);
-    let table = Table::of(
+    let count = medium.optima.iter().filter(inside).count();
+    Table::of(
         [
             &format!("{}-optima", medium.id),
             "Best σ_samp of each curve",
@@ -82,10 +82,8 @@ pub(super) fn optima(medium: &MediumReport) -> Table {
             ("position", "", &|row| end(row.per_second)),
             ("T²/(MSE · s)", "1/s", &|row| efficiency(row.per_second)),
         ],
-    );
-    let count = medium.optima.iter().filter(|row| inside(row)).count();
-    let folded = format!("{} curves, {count} of them with their best σ_samp inside", medium.optima.len());
-    Table { folded: Some(folded), ..table }
+    )
+    .folded(format!("{} curves, {count} of them with their best σ_samp inside", medium.optima.len()))
 }
 
 /// Limits of variance times look-ups.
@@ -111,8 +109,8 @@ pub(super) fn images(medium: &MediumReport, studies: &[&ImageStudy]) -> Table {
     let all = studies.iter().flat_map(|study| study.panels.iter().map(move |panel| (study.budget, panel)));
     let rows: Vec<(f64, &ImagePanel)> = all.collect();
     let budgets: Vec<String> = studies.iter().map(|study| short(study.budget)).collect();
-    let folded = format!("{} images at {} look-ups per pixel", rows.len(), listed(&budgets));
-    let table = Table::of(
+    let line = format!("{} images at {} look-ups per pixel", rows.len(), listed(&budgets));
+    Table::of(
         [
             &format!("{}-images", medium.id),
             "Error of the images",
@@ -127,14 +125,14 @@ pub(super) fn images(medium: &MediumReport, studies: &[&ImageStudy]) -> Table {
             ("RMSE", "1", &|(_, panel)| Cell::measured(panel.rmse, panel.rmse_interval)),
             ("CPU time", "s", &|(_, panel)| Cell::Number(panel.seconds)),
         ],
-    );
-    Table { folded: Some(folded), ..table }
+    )
+    .folded(line)
 }
 
 /// The hard cases, under one line.
 pub(super) fn hard_cases(rows: &[StabilityRow]) -> Table {
     let right = rows.iter().filter(|row| row.passes).count();
-    let table = Table::of(
+    Table::of(
         [
             "hard-cases-rows",
             "Hard cases of transmittance",
@@ -148,6 +146,6 @@ pub(super) fn hard_cases(rows: &[StabilityRow]) -> Table {
             ("ours", "", &|row| Cell::text(&row.ours)),
             ("right", "", &|row| Cell::Flag(row.passes)),
         ],
-    );
-    Table { folded: Some(format!("{right} of {} right", rows.len())), ..table }
+    )
+    .folded(format!("{right} of {} right", rows.len()))
 }

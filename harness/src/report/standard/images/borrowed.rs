@@ -3,13 +3,6 @@
 
 use std::collections::VecDeque;
 
-/// The entry of a pixel's ray: neighbouring rays share distances from the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PixelRay {
-    /// Distance from the camera to the medium.
-    pub(super) entry: f64,
-}
-
 /// The look-ups of the last few rays of a row.
 ///
 /// They are independent of the interaction points of the current ray, so that a control built from them biases nothing.
@@ -24,12 +17,12 @@ pub(super) const RAYS: usize = 3;
 pub(super) const CELLS: usize = 16;
 
 impl Borrowed {
-    /// Nodes and values of a piecewise linear control over a profile: one node in the middle of each cell that holds
+    /// Nodes and values of a piecewise linear control over a profile that begins at this distance from the camera: one node in the middle of each cell that holds
     /// borrowed points, constant beyond the first and the last; zero where nothing was borrowed.
-    pub(super) fn control(&self, ray: &PixelRay, length: f64) -> (Vec<f64>, Vec<f64>) {
+    pub(super) fn control(&self, entry: f64, length: f64) -> (Vec<f64>, Vec<f64>) {
         let mut cells = [(0.0, 0u32); CELLS];
         for (distance, sigma_t) in self.rays.iter().flatten() {
-            let s = distance - ray.entry;
+            let s = distance - entry;
             if (0.0..length).contains(&s) {
                 let cell = &mut cells[((s / length * CELLS as f64) as usize).min(CELLS - 1)];
                 *cell = (cell.0 + sigma_t, cell.1 + 1);
@@ -47,11 +40,11 @@ impl Borrowed {
     }
 
     /// Remembers the look-ups of a ray.
-    pub(super) fn give(&mut self, ray: &PixelRay, points: &[(f64, f64)]) {
+    pub(super) fn give(&mut self, entry: f64, points: &[(f64, f64)]) {
         if self.rays.len() == RAYS {
             self.rays.pop_front();
         }
-        self.rays.push_back(points.iter().map(|(s, sigma_t)| (ray.entry + s, *sigma_t)).collect());
+        self.rays.push_back(points.iter().map(|(s, sigma_t)| (entry + s, *sigma_t)).collect());
     }
 }
 
@@ -62,14 +55,14 @@ mod tests {
     #[test]
     fn points_are_averaged_per_cell_and_shifted_by_the_entry() {
         let mut borrowed = Borrowed::default();
-        assert_eq!(borrowed.control(&PixelRay { entry: 5.0 }, 16.0), (vec![0.0, 16.0], vec![0.0, 0.0]));
-        borrowed.give(&PixelRay { entry: 6.0 }, &[(0.2, 1.0), (0.6, 3.0), (9.1, 7.0)]);
-        let (positions, values) = borrowed.control(&PixelRay { entry: 5.0 }, 16.0);
+        assert_eq!(borrowed.control(5.0, 16.0), (vec![0.0, 16.0], vec![0.0, 0.0]));
+        borrowed.give(6.0, &[(0.2, 1.0), (0.6, 3.0), (9.1, 7.0)]);
+        let (positions, values) = borrowed.control(5.0, 16.0);
         assert_eq!(positions, [0.0, 1.5, 10.5, 16.0]);
         assert_eq!(values, [2.0, 2.0, 7.0, 7.0]);
         for _ in 0..RAYS {
-            borrowed.give(&PixelRay { entry: 5.0 }, &[]);
+            borrowed.give(5.0, &[]);
         }
-        assert_eq!(borrowed.control(&PixelRay { entry: 5.0 }, 16.0).0.len(), 2);
+        assert_eq!(borrowed.control(5.0, 16.0).0.len(), 2);
     }
 }

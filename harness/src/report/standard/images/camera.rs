@@ -3,7 +3,6 @@
 use crate::Failure;
 use crate::field::AnyProfile;
 use crate::report::standard::Subject;
-use crate::report::standard::subject::enclosing_ball;
 use glam::DVec3;
 
 /// Vertical field of view \[degrees\].
@@ -25,7 +24,7 @@ impl Camera {
     /// A camera in front of the medium, at three times the radius of the ball around it, looking along +z: for the paper's
     /// sphere the camera of the scene spec, at (0, 0, −20) towards (0, 0, 10).
     pub(super) fn before(subject: &Subject, resolution: usize) -> Self {
-        let (middle, radius) = enclosing_ball(&subject.bounds);
+        let (middle, radius) = subject.bounds.enclosing_ball();
         let half = (0.5 * FIELD_OF_VIEW.to_radians()).tan();
         let (forward, up) = (DVec3::Z, DVec3::Y);
         Self {

@@ -9,11 +9,6 @@ pub(super) struct Exact {
     pub(super) error: f64,
 }
 
-impl Exact {
-    /// A ray that misses the medium.
-    pub(super) const MISS: Self = Self { transmittance: 1.0, error: 0.0 };
-}
-
 /// Points of each of the two rules: a hundred times the budget of an image.
 const POINTS: u32 = 1024;
 

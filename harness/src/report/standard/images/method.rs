@@ -1,6 +1,6 @@
 //! Estimates of one pixel with its share of the look-ups.
 
-use super::borrowed::{Borrowed, PixelRay};
+use super::borrowed::Borrowed;
 use crate::field::KnownField;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
@@ -8,10 +8,9 @@ use fairflight_media::{
     Violation, Watched,
 };
 use fairflight_sources::Seeded;
-use fairflight_transmittance::{
-    Explorers, NoSteps, Offset, RayMarching, TooFewExplorers, Tracking, TransmittanceEstimator, Woodcock,
-};
+use fairflight_transmittance::{Explorers, Offset, RayMarching, Tracking, TransmittanceEstimator, Woodcock};
 use std::cell::RefCell;
+use std::error::Error;
 
 /// A way to estimate the transmittance of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,17 +38,6 @@ pub(super) struct Pixel {
     pub(super) violation: Option<Violation>,
 }
 
-/// Why a pixel could not be prepared.
-#[derive(Clone, Debug, thiserror::Error)]
-pub(super) enum PixelError {
-    #[error(transparent)]
-    Field(#[from] FieldError),
-    #[error(transparent)]
-    Steps(#[from] NoSteps),
-    #[error(transparent)]
-    Explorers(#[from] TooFewExplorers),
-}
-
 /// One pixel: `rays` estimates by `method` on its ray.
 pub(super) struct Estimate<'a> {
     pub(super) method: Method,
@@ -57,8 +45,8 @@ pub(super) struct Estimate<'a> {
     pub(super) source: &'a mut Seeded,
     /// Look-ups of the pixels before; filled only by the method that borrows.
     pub(super) borrowed: &'a mut Borrowed,
-    /// The entry of this ray, seen from the camera that its neighbours share.
-    pub(super) ray: PixelRay,
+    /// Distance to the medium from the camera, which neighbouring rays share.
+    pub(super) entry: f64,
 }
 
 /// The values that a method admits: Woodcock's up to its majorant, every finite one otherwise.
@@ -76,8 +64,8 @@ impl Estimate<'_> {
     ///
     /// # Errors
     /// If a parameter of the method is not lawful.
-    pub(super) fn draw(self, field: &dyn KnownField) -> Result<Pixel, PixelError> {
-        let Self { method, rays, source, borrowed, ray } = self;
+    pub(super) fn draw(self, field: &dyn KnownField) -> Result<Pixel, Box<dyn Error>> {
+        let Self { method, rays, source, borrowed, entry } = self;
         let limit = if let Method::Woodcock { majorant } = method { majorant } else { f64::INFINITY };
         let looked_up = Counted::new(Watched::new(field, Below(limit)));
         let length = field.length();
@@ -98,11 +86,11 @@ impl Estimate<'_> {
                 average(&double_particle(control, sigma_samp)?, &looked_up, rays, source)
             }
             Method::BorrowedExplorers { sigma_samp } => {
-                let (positions, values) = borrowed.control(&ray, length);
+                let (positions, values) = borrowed.control(entry, length);
                 let control = PiecewiseLinear::new(positions, values)?;
                 let recorded = Recorded { field: &looked_up, points: RefCell::default() };
                 let mean = average(&double_particle(control, sigma_samp)?, &recorded, rays, source);
-                borrowed.give(&ray, &recorded.points.into_inner());
+                borrowed.give(entry, &recorded.points.into_inner());
                 mean
             }
         };

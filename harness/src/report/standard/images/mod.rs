@@ -7,7 +7,6 @@ mod method;
 mod render;
 
 use super::interval::bootstrap_rmse;
-use super::subject::enclosing_ball;
 use super::{Run, Subject};
 use crate::Failure;
 use crate::field::AnyProfile;
@@ -66,9 +65,9 @@ impl<'a> Scene<'a> {
         Ok(Self { subject, resolution, pixels, exact, mean_length })
     }
 
-    /// The values of the pixels that meet the medium, among those that do not.
+    /// The values of the pixels that meet the medium, among those that do not, which nothing attenuates.
     fn whole(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
-        let mut whole = vec![Exact::MISS.transmittance; self.resolution * self.resolution];
+        let mut whole = vec![1.0; self.resolution * self.resolution];
         for ((pixel, _), value) in self.pixels.iter().zip(values) {
             whole[*pixel] = value;
         }
@@ -126,7 +125,7 @@ fn choices(scene: &Scene<'_>, budget: f64, seed: u64) -> Result<Vec<Choice>, Fai
     let explorers = (0.5 * budget) as usize;
     let own_sigma = (budget - explorers as f64) / mean_length;
     // The paper's step in its sphere of radius 10; the same part of the radius elsewhere.
-    let step = STEP * enclosing_ball(&subject.bounds).1 / 10.0;
+    let step = STEP * subject.bounds.enclosing_ball().1 / 10.0;
     let one_ray = |name, series, parameters, method| Choice { name, series, parameters, method, rays: 1.0 };
     Ok(vec![
         one_ray(

@@ -1,7 +1,7 @@
 //! Renders an image: rows in parallel, pixels of a row in order, since a pixel may borrow from the one before.
 
 use super::Scene;
-use super::borrowed::{Borrowed, PixelRay};
+use super::borrowed::Borrowed;
 use super::method::{Estimate, Method, Pixel};
 use crate::Failure;
 use crate::parallel::try_in_parallel;
@@ -71,7 +71,7 @@ fn one(
         rays: rays_of(index, rays),
         source: &mut source,
         borrowed,
-        ray: PixelRay { entry: profile.entry_distance() },
+        entry: profile.entry_distance(),
     };
     let in_image = |reason: &dyn std::fmt::Display| {
         Failure::refused(format!("report: image of {}, pixel {number}: {reason}", scene.subject.id))
