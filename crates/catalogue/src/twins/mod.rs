@@ -3,6 +3,7 @@
 //! A law that nothing can break tests nothing. Each statistical twin states its profile, its N and the |z| that it shows
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
+mod bidirectional;
 mod cells;
 mod collision_weights;
 mod combs;
@@ -145,6 +146,6 @@ impl Twin {
 pub fn twins() -> Vec<Twin> {
     joined!(
         twins of collision_weights, cells, control, exactly, freeflight, spectral, points, majorant,
-        sampling, line_integral, series, combs, logarithm, variance, phase, paths, vpl
+        sampling, line_integral, series, combs, logarithm, variance, phase, paths, vpl, bidirectional
     )
 }
