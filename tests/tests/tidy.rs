@@ -67,7 +67,7 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("metropolis", &["paths"]),
     ("compensation", &["vpl"]),
     ("laws", &["stats", "transmittance", "freeflight"]),
-    ("catalogue", &["laws", "paths", "vpl", "metropolis", "compensation"]),
+    ("catalogue", &["laws", "paths", "vpl", "bidirectional", "metropolis", "compensation"]),
 ];
 
 fn reachable(from: &str) -> BTreeSet<&'static str> {
@@ -198,8 +198,9 @@ fn a_long_file_says_why() {
 }
 
 /// Product lines of the harness, its packages and the build script included: all lines of formatted Rust but modules of tests, integration tests,
-/// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised.
-const MOST_PRODUCT_LINES: usize = 30_150;
+/// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised: 700 for the
+/// integrator `bidirectional`, its light image, and its table of strategies.
+const MOST_PRODUCT_LINES: usize = 30_900;
 
 #[test]
 fn the_harness_does_not_grow() {

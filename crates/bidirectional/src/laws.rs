@@ -83,7 +83,8 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
                 1 => at_light.sampled,
                 // x_1 is the last node of the light subpath, x_t the one with k − 1 − t before it.
                 _ if t == 1 => {
-                    light.last().filter(|z| z.place.is_connectable()).map_or(0.0, |z| self.light_image(z))
+                    let exists = |z: &&Node| z.place.is_connectable() && self.light_paths > 0.0;
+                    light.last().filter(exists).map_or(0.0, |z| self.light_image(z))
                 }
                 _ => {
                     let (y, z) = (&eye[t - 2], &light[k - 1 - t]);

@@ -40,7 +40,7 @@ pub struct Weigh<'s, W: Types, K> {
     pub thickness: K,
     /// Rule by which weights follow from densities.
     pub heuristic: Heuristic,
-    /// n_L > 0: light paths of the whole image for one sample of each pixel.
+    /// n_L: light paths of the whole image for one sample of each pixel; 0 without a light image, whose strategies then weigh nothing.
     pub light_paths: f64,
 }
 

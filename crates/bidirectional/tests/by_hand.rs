@@ -23,6 +23,7 @@ fn floor<M: Medium>(medium: M, source: Source<f64>) -> Scene<M> {
 
 fn scene<M: Medium>(medium: M, surfaces: Vec<Surface<f64>>, sources: Vec<Source<f64>>) -> Scene<M> {
     Scene {
+        light_paths_per_pixel: 1.0,
         camera: Camera::new(dvec3(3.0, 4.0, 0.0), DVec3::ZERO, DVec3::Y, 90.0, [1, 1]).unwrap(),
         volume: Volume {
             medium,

@@ -47,7 +47,7 @@ fn verdict<M: Medium, T: RayTransmittance<M> + Clone, K: WeightThickness<M> + Cl
 ) -> Verdict {
     let emitters = scene.emitters::<T>();
     let mut weigh = scene.weigh(&emitters, how.heuristic, how.thickness.clone());
-    weigh.light_paths = f64::from(how.light_paths);
+    weigh.light_paths *= f64::from(how.light_paths);
     let mut both = Bidirectional::new(weigh, Walking::new(scene.walk), how.shadow.clone())
         .with_connection_roulette(how.roulette);
     let mut tracer = PathTracer::new(scene.world(), scene.walk, how.shadow.clone(), Heuristic::Balance);
@@ -65,7 +65,9 @@ fn verdict<M: Medium, T: RayTransmittance<M> + Clone, K: WeightThickness<M> + Cl
             let mut sum = scale;
             for path in 0..how.light_paths {
                 both.trace_light(&mut light, &mut source);
-                both.light_image(&light, &mut source, |_, value| sum += how.splats * value);
+                if scene.light_paths_per_pixel > 0.0 {
+                    both.light_image(&light, &mut source, |_, value| sum += how.splats * value);
+                }
                 if path == 0 {
                     sum += both.radiance(&ray(&mut source), &light, &mut source);
                 }
@@ -110,6 +112,11 @@ fn forward_scattering() {
 #[test]
 fn a_lamp_in_glass() {
     agrees(("bulb", &bulb()), &usual(), 120_000);
+}
+
+#[test]
+fn without_a_light_image() {
+    agrees(("mixed", &Scene { light_paths_per_pixel: 0.0, ..mixed() }), &usual(), 100_000);
 }
 
 #[test]

@@ -49,6 +49,15 @@ fn weights_are_those_by_all_densities_and_sum_to_one() {
 }
 
 #[test]
+fn without_a_light_image_its_strategies_weigh_nothing() {
+    for heuristic in ALL {
+        for (name, scene) in [("mixed", mixed()), ("bulb", bulb())] {
+            check((name, &Scene { light_paths_per_pixel: 0.0, ..scene }), (heuristic, Exact), 100);
+        }
+    }
+}
+
+#[test]
 fn any_thickness_will_do() {
     let nodes = |n| Midpoint(NonZeroU32::new(n).unwrap());
     check(("one node", &glass()), (Heuristic::Balance, nodes(1)), 100);

@@ -4,6 +4,7 @@
 //! * [`twins()`]: estimators with one line wrong, each of which the same check must reject.
 //! * [`hard_cases()`]: numerically hard inputs with their exact answers.
 //! * [`paths`]: the laws of walks in space: radiance against quadrature, slabs and closed forms.
+//! * [`bidirectional`]: weights of paths joined from both ends, pairs of strategies, their expectation.
 //! * [`vpl`]: the laws of virtual point lights: what bounding them takes away, and light among surfaces.
 //!
 //! The laws of estimators, free flights and phase functions are functions of `fairflight-laws`. Nothing here knows files, clocks,
@@ -24,6 +25,7 @@ mod function;
 mod hard_cases;
 mod twins;
 
+pub mod bidirectional;
 pub mod paths;
 pub mod vpl;
 

@@ -1,11 +1,12 @@
 //! An integrator of any kind, compiled for the medium that it meets.
 
+use super::bidirectional::BidirectionalPlan;
 use super::single_scattering::SingleScatteringPlan;
-use super::transport::{PathTracerPlan, Stage, VplPlan};
-use super::{AnyPhase, WalkPlan};
+use super::transport::{PathTracerPlan, Stage, TransportPlan, VplPlan};
+use super::{AnyPhase, Tally, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, Unlawful};
-use crate::spec::{IntegratorSpec, Particles, TransmittanceSpec};
+use crate::spec::{IntegratorSpec, Particles, ThicknessSpec, TransmittanceSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Spectrum, Volume};
@@ -42,6 +43,8 @@ pub enum IntegratorPlan {
     PathTracer(PathTracerPlan),
     /// Virtual point lights, among surfaces.
     Vpl(Box<VplPlan>),
+    /// Paths from the camera and from lights, joined, among surfaces.
+    Bidirectional(BidirectionalPlan),
 }
 
 /// An integrator on a medium, for one tile: one call per camera ray, and what happens below is compiled for the types of the scene.
@@ -51,6 +54,36 @@ pub trait TileIntegrator<C> {
 
     /// Events that were counted so far.
     fn counts(&self) -> Counts;
+
+    /// Takes what was found since the last call and is no estimate along a ray of this tile.
+    fn splatted(&mut self) -> Splatted<C> {
+        Splatted::none()
+    }
+
+    /// The part of the estimate, in words, that made it infinite or no number, where that is known.
+    fn culprit(&self) -> Option<String> {
+        None
+    }
+}
+
+/// Light that an integrator found for any pixel, and by what it found all light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Splatted<C> {
+    /// Column and row of a pixel, and the radiance to be added to its sample of this pass.
+    pub splats: Vec<([u32; 2], C)>,
+    /// Contributions by strategy, those of the samples along camera rays included.
+    pub tally: Tally,
+    /// Number of light paths.
+    pub light_paths: u64,
+    /// The sum over them of the power that was not followed, since no other integrator would see it.
+    pub unseen_power: f64,
+}
+
+impl<C> Splatted<C> {
+    /// Nothing.
+    pub fn none() -> Self {
+        Self { splats: Vec::new(), tally: Tally::none(), light_paths: 0, unseen_power: 0.0 }
+    }
 }
 
 /// Events of an integrator that an image tells of.
@@ -146,19 +179,35 @@ impl IntegratorPlan {
             }
             IntegratorSpec::PathTracer(spec) => PathTracerPlan::build(spec, scene).map(Self::PathTracer),
             IntegratorSpec::Vpl(spec) => VplPlan::build(spec, scene).map(|plan| Self::Vpl(Box::new(plan))),
+            IntegratorSpec::Bidirectional(spec) => {
+                BidirectionalPlan::build(spec, scene).map(Self::Bidirectional)
+            }
         }
     }
 
     /// The look-ups that were made to prepare it: its estimator of transmittance, and local means.
     pub fn preparations(&self) -> impl Iterator<Item = &Preparation> {
-        let (shadow, means) = match self {
-            Self::Transmittance(shadow) => (Some(shadow), None),
-            Self::SingleScattering(plan) => (Some(&plan.shadow), None),
-            Self::PathTracer(plan) => (Some(&plan.transport.shadow), None),
-            Self::Vpl(plan) => (Some(&plan.transport.shadow), plan.means.as_ref()),
-            Self::ParticleTracer(_) | Self::PhotonTracer(_) | Self::LineSplitting { .. } => (None, None),
+        let shadow = match self {
+            Self::Transmittance(shadow) => Some(shadow),
+            Self::SingleScattering(plan) => Some(&plan.shadow),
+            _ => self.transport().map(|transport| &transport.shadow),
         };
+        let means = if let Self::Vpl(plan) = self { plan.means.as_ref() } else { None };
         shadow.and_then(Shadow::preparation).into_iter().chain(means)
+    }
+
+    /// The flights and connections of an integrator that knows surfaces.
+    fn transport(&self) -> Option<&TransportPlan> {
+        match self {
+            Self::PathTracer(plan) => Some(&plan.transport),
+            Self::Vpl(plan) => Some(&plan.transport),
+            Self::Bidirectional(plan) => Some(&plan.transport),
+            Self::Transmittance(_)
+            | Self::ParticleTracer(_)
+            | Self::PhotonTracer(_)
+            | Self::LineSplitting { .. }
+            | Self::SingleScattering(_) => None,
+        }
     }
 
     /// The walks of an integrator that has some.
@@ -168,24 +217,20 @@ impl IntegratorPlan {
             Self::ParticleTracer(walk) | Self::PhotonTracer(walk) | Self::LineSplitting { walk, .. } => {
                 Some(walk)
             }
-            Self::PathTracer(plan) => Some(&plan.transport.walk),
-            Self::Vpl(plan) => Some(&plan.transport.walk),
-            Self::Transmittance(_) | Self::SingleScattering(_) => None,
+            _ => self.transport().map(|transport| &transport.walk),
         }
     }
 
-    /// True if the pixels of a pass share a batch that is prepared for it: a pass is then of one sample per pixel.
+    /// True if the pixels of a pass share virtual point lights, or light each other: a pass is then of one sample per pixel.
     #[must_use]
     pub fn draws_in_batches(&self) -> bool {
-        match self {
-            Self::Transmittance(_)
-            | Self::ParticleTracer(_)
-            | Self::PhotonTracer(_)
-            | Self::LineSplitting { .. }
-            | Self::SingleScattering(_)
-            | Self::PathTracer(_) => false,
-            Self::Vpl(_) => true,
-        }
+        matches!(self, Self::Vpl(_)) || self.splats()
+    }
+
+    /// True if samples are not complete before all of their pass are drawn.
+    #[must_use]
+    pub fn splats(&self) -> bool {
+        matches!(self, Self::Bidirectional(_))
     }
 
     /// The integrator in a volume, for one tile. The first look-up that an estimator of transmittance is not defined for is left in
@@ -205,6 +250,7 @@ impl IntegratorPlan {
             return Ok(match self {
                 Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
                 Self::Vpl(plan) => plan.on(volume, stage, unlawful),
+                Self::Bidirectional(plan) => plan.on(volume, stage, unlawful),
                 _ => plain(Attenuation::new(volume, lights, Regular)),
             });
         }
@@ -225,6 +271,7 @@ impl IntegratorPlan {
             Self::SingleScattering(plan) => return plan.on(volume, lights, unlawful),
             Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
             Self::Vpl(plan) => plan.on(volume, stage, unlawful),
+            Self::Bidirectional(plan) => plan.on(volume, stage, unlawful),
         })
     }
 
@@ -233,10 +280,9 @@ impl IntegratorPlan {
         const ESTIMATOR: &str = "estimator.kind: regular";
         match self {
             Self::Transmittance(shadow) => shadow.is_regular().then_some(ESTIMATOR),
-            Self::PathTracer(plan) => plan.transport.shadow.is_regular().then_some(ESTIMATOR),
-            Self::Vpl(plan) => plan.transport.shadow.is_regular().then_some(ESTIMATOR),
             Self::SingleScattering(plan) => plan.needs_closed_form(),
-            Self::ParticleTracer(_) | Self::PhotonTracer(_) | Self::LineSplitting { .. } => None,
+            Self::Bidirectional(plan) if plan.thickness == ThicknessSpec::Exact => Some("thickness: exact"),
+            _ => self.transport().and_then(|transport| transport.shadow.is_regular().then_some(ESTIMATOR)),
         }
     }
 
@@ -252,9 +298,9 @@ impl IntegratorPlan {
                 walk.admits((lowest, highest), albedo)
             }
             Self::SingleScattering(plan) => plan.admits((lowest, highest)),
-            Self::PathTracer(plan) => plan.transport.walk.admits((lowest, highest), albedo),
-            Self::Vpl(plan) => plan.transport.walk.admits((lowest, highest), albedo),
-            Self::Transmittance(_) => Ok(()),
+            _ => {
+                self.transport().map_or(Ok(()), |transport| transport.walk.admits((lowest, highest), albedo))
+            }
         }
     }
 

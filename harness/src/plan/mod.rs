@@ -4,19 +4,23 @@
 //! type, so that a look-up is a direct call. Control and sampling extinction are enums inside the estimator: their
 //! branches are the same at every collision, and a bench shows that they cost nothing measurable.
 
+mod bidirectional;
 mod integrator;
 mod phase;
 mod rays;
 mod scene;
 mod single_scattering;
 mod surfaces;
+mod tally;
 mod transport;
 mod walk;
 
-pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, TileIntegrator};
+pub use bidirectional::BidirectionalPlan;
+pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, Splatted, TileIntegrator};
 pub use phase::AnyPhase;
 pub use scene::{Radiant, ScenePlan, Spectra};
 pub use single_scattering::SingleScatteringPlan;
+pub use tally::Tally;
 pub use transport::{PathTracerPlan, Seen, Stage, TransportPlan, VplPlan};
 pub use walk::{SpaceSampling, WalkPlan};
 

@@ -53,10 +53,10 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
             return Err(shut_in(&format!("surfaces.{i}"), j));
         }
     }
-    if !spec.integrator.kind().knows_surfaces() && !spec.surfaces.is_empty() {
+    if spec.integrator.kind().transport().is_none() && !spec.surfaces.is_empty() {
         let name = spec.integrator.name();
         return Err(Failure::refused(format!(
-            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer and vpl"
+            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer, vpl and bidirectional"
         )));
     }
     Ok(())

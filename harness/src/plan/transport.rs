@@ -7,9 +7,9 @@ use crate::estimator::{InScene, Preparation, Shadow, ShadowWorker, Unlawful};
 use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
 use fairflight_media::{EmptySpace, LineThickness};
-use fairflight_paths::transport::{MadeOf, Types, World};
+use fairflight_paths::transport::{Emitters, MadeOf, Types, World};
 use fairflight_paths::{Heuristic, PathTracer};
-use fairflight_scene::{Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
+use fairflight_scene::{Camera, Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
 use fairflight_vpl::{Component, Gather, Pairing, Term, Vpl, VplIntegrator};
 use std::cell::Cell;
 
@@ -20,6 +20,12 @@ pub struct Stage<'s, C> {
     pub lights: &'s Lights<C>,
     /// The surfaces, which may emit light.
     pub surfaces: &'s Surfaces<C>,
+    /// The camera.
+    pub camera: &'s Camera,
+    /// All that emits light, from which light paths start.
+    pub emitters: &'s Emitters<C>,
+    /// The mean radiance of the image so far; `None` before the first pass.
+    pub mean: Option<f64>,
     /// Virtual point lights, for an integrator that gathers from them.
     pub vpls: &'s [Vpl<C>],
     /// The bound of their geometric term.
@@ -40,7 +46,7 @@ pub struct TransportPlan {
     pub walk: WalkPlan,
     /// Transmittance of connections.
     pub(super) shadow: Shadow,
-    heuristic: Heuristic,
+    pub(super) heuristic: Heuristic,
 }
 
 /// A path tracer whose parameters are checked.
@@ -70,7 +76,7 @@ pub struct VplPlan {
 }
 
 impl TransportPlan {
-    fn build(spec: &TransportSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
+    pub(super) fn build(spec: &TransportSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
         const KEY: &str = "integrator.estimator";
         Ok(Self {
             walk: WalkPlan::build(&spec.walk, scene.medium, scene.bounds)?,

@@ -187,6 +187,22 @@ impl<T, R: Rule<T>> Rule<Option<T>> for Maybe<R> {
     }
 }
 
+/// A value that keeps the rule `R`, or null.
+#[derive(Debug)]
+pub struct Nullable<R>(PhantomData<R>);
+
+impl<T, R: Rule<T>> Rule<Option<T>> for Nullable<R> {
+    fn read(node: &Node<'_>) -> Result<Option<T>, Failure> {
+        if node.is_null() { Ok(None) } else { R::read(node).map(Some) }
+    }
+    fn written(value: &Option<T>) -> Value {
+        value.as_ref().map_or(Value::Null, R::written)
+    }
+    fn schema() -> Value {
+        json!({ "anyOf": [R::schema(), { "type": "null" }] })
+    }
+}
+
 /// A type with one rule of its own.
 pub trait Ruled: Sized {
     /// See [`Rule::read`].

@@ -10,6 +10,8 @@ pub(super) struct Batch<C> {
     pub vpls: Vec<Vpl<C>>,
     /// The bound of their geometric term \[1/length²\].
     pub bound: f64,
+    /// The mean radiance that the passes before found; `None` without any.
+    pub mean: Option<f64>,
     /// Light that is not drawn pixel by pixel.
     pub photons: Option<PhotonLayer<C>>,
 }
@@ -17,6 +19,6 @@ pub(super) struct Batch<C> {
 impl<C> Batch<C> {
     /// A batch without anything that is shared.
     pub(super) fn none() -> Self {
-        Self { vpls: Vec::new(), bound: f64::INFINITY, photons: None }
+        Self { vpls: Vec::new(), bound: f64::INFINITY, mean: None, photons: None }
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Canvas<C> {
     pub samples: u32,
     /// The mean over pixels and channels of each pass.
     pub pass_means: Vec<f64>,
+    /// The mean of those means; `None` before the first pass.
+    pub mean: Option<f64>,
     /// The part of the image that is not drawn pixel by pixel.
     pub photons: Option<PhotonLayer<C>>,
     /// Warning about the walks.
@@ -33,8 +35,19 @@ pub(super) struct Drawn<C> {
     /// Samples per pixel.
     pub samples: u32,
     pub mean_variance: MeanVariance,
+    /// Light by strategy; none where it is not told.
+    pub strategies: Vec<Found>,
     /// Warning about the walks.
     pub warning: Option<String>,
+}
+
+/// Light that one strategy found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Found {
+    /// The mean over all pixels.
+    pub mean: f64,
+    /// The variance of one sample, averaged over pixels; `None` for one sample.
+    pub variance: Option<f64>,
 }
 
 /// Source of the variance of the image's mean.
@@ -63,6 +76,10 @@ pub(super) struct Spent {
     pub compensation_tried: u64,
     /// Compensation vertices that lay where something was lost.
     pub compensation_inside: u64,
+    /// Light paths of a bidirectional integrator.
+    pub light_paths: u64,
+    /// The sum over them of the power that was not followed.
+    pub unseen_power: f64,
 }
 
 impl<C: Spectrum> Canvas<C> {
@@ -75,9 +92,33 @@ impl<C: Spectrum> Canvas<C> {
             cost: Spent::default(),
             samples: 0,
             pass_means: Vec::new(),
+            mean: None,
             photons: None,
             warning: None,
         }
+    }
+
+    /// Adds the mean of a pass of so many samples per pixel.
+    pub(super) fn push_pass(&mut self, mean: f64, samples: u32) {
+        self.pass_means.push(mean);
+        let before = self.mean.unwrap_or(0.0);
+        self.mean = Some(before + (mean - before) / self.pass_means.len() as f64);
+        self.samples += samples;
+    }
+
+    /// Light by strategy, over all tiles, which are independent of each other.
+    fn strategies(&self) -> Vec<Found> {
+        let pixels: f64 = self.resolution.map(f64::from).iter().product();
+        let count = self.tiles.iter().map(|tile| tile.strategies().len()).max().unwrap_or(0);
+        let of = |index: usize| {
+            let moments = || self.tiles.iter().filter_map(move |tile| tile.strategies().get(index));
+            let variance: Option<f64> = moments().map(Pixel::variance).sum();
+            Found {
+                mean: moments().map(Pixel::mean).sum::<f64>() / pixels,
+                variance: variance.map(|variance| variance / pixels),
+            }
+        };
+        (0..count).map(of).collect()
     }
 
     /// The image so far. `shares_batches` says that the pixels of a pass are not independent of each other.
@@ -91,7 +132,8 @@ impl<C: Spectrum> Canvas<C> {
             MeanVariance::OfPixels { shared: Some(0.0) }
         };
         let (cost, samples, warning) = (self.cost, self.samples, self.warning.clone());
-        let mut drawn = Drawn { pixels, cost, samples, mean_variance, warning };
+        let strategies = self.strategies();
+        let mut drawn = Drawn { pixels, cost, samples, mean_variance, strategies, warning };
         if let Some(photons) = &self.photons {
             photons.add_to(&mut drawn);
         }
@@ -108,8 +150,25 @@ impl Drawn<DVec3> {
             cost: red.cost.and(green.cost).and(blue.cost),
             samples: red.samples,
             mean_variance: MeanVariance::of_channels([&red, &green, &blue].map(|drawn| drawn.mean_variance)),
+            strategies: Found::of_channels([&red, &green, &blue].map(|drawn| drawn.strategies.as_slice())),
             warning: red.warning.or(green.warning).or(blue.warning),
         }
+    }
+}
+
+impl Found {
+    /// The mean of three independent channels.
+    fn of_channels(channels: [&[Self]; 3]) -> Vec<Self> {
+        let count = channels.map(<[Self]>::len).into_iter().max().unwrap_or(0);
+        let of = |index: usize| {
+            let found = || channels.into_iter().filter_map(move |channel| channel.get(index));
+            let variance: Option<f64> = found().map(|found| found.variance).sum();
+            Self {
+                mean: found().map(|found| found.mean).sum::<f64>() / 3.0,
+                variance: variance.map(|variance| variance / 9.0),
+            }
+        };
+        (0..count).map(of).collect()
     }
 }
 
@@ -135,6 +194,8 @@ impl Spent {
             light_path_seconds: self.light_path_seconds + other.light_path_seconds,
             compensation_tried: self.compensation_tried + other.compensation_tried,
             compensation_inside: self.compensation_inside + other.compensation_inside,
+            light_paths: self.light_paths + other.light_paths,
+            unseen_power: self.unseen_power + other.unseen_power,
         }
     }
 }

@@ -2,13 +2,17 @@
 
 use super::batch::Batch;
 use super::canvas::{Canvas, Spent};
+use super::light_image::LightImage;
 use super::tile::{Added, Tile};
 use crate::field::{AnyMedium, OnlyLookUps};
-use crate::plan::{Counts, IntegratorPlan, Radiant, ScenePlan, SceneVolume, Stage, TileIntegrator};
+use crate::plan::{
+    Counts, IntegratorPlan, Radiant, ScenePlan, SceneVolume, Seen, Splatted, Stage, TileIntegrator,
+};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::{EmptySpace, LineThickness, Medium, Observed};
-use fairflight_scene::{Spectrum, Volume};
+use fairflight_paths::transport::{Emitters, World};
+use fairflight_scene::{Spectrum, Surfaces, Volume};
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -24,11 +28,11 @@ pub(super) struct Draw<'a, C> {
 }
 
 /// Work with the integrator of one tile.
-pub(super) type Work<'a, C> = dyn FnMut(&mut dyn TileIntegrator<C>) -> Result<Added, Failure> + 'a;
+pub(super) type Work<'a, C> = dyn FnMut(&mut dyn TileIntegrator<C>) -> Result<Added<C>, Failure> + 'a;
 
 /// A scene compiled for its medium.
 ///
-/// An integrator whose pixels share what is prepared for a pass (virtual point lights, say) says so in
+/// An integrator whose pixels share what is prepared for a pass (virtual point lights, say), or light each other, says so in
 /// [`IntegratorPlan::draws_in_batches`](crate::plan::IntegratorPlan::draws_in_batches): its passes then are of one sample per pixel, and
 /// the variance of the image's mean comes from the means of the passes.
 pub(super) trait Scene<C>: Sync {
@@ -39,46 +43,50 @@ pub(super) trait Scene<C>: Sync {
     /// If a look-up is not lawful.
     fn prepare(&self, pass: usize) -> Result<(Batch<C>, Spent), Failure>;
 
-    /// Does the work of one tile with the integrator of the scene; what it met is judged afterwards. Gives the sum of the samples, and the
-    /// cost.
+    /// Does the work of one tile with the integrator of the scene; what it met is judged afterwards. Gives what came of it, and the cost.
     ///
     /// # Errors
     /// If the integrator does not fit the scene, a look-up is not lawful, or the work fails.
-    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(f64, Spent), Failure>;
+    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(Added<C>, Spent), Failure>;
 }
 
 /// A scene whose medium has the type M.
 struct In<'a, M, C> {
     draw: Draw<'a, C>,
     medium: M,
+    emitters: Emitters<C>,
 }
 
 impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
     fn prepare(&self, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
-        let Self { draw, medium } = self;
+        let Self { draw, medium, emitters } = self;
         match &draw.plan.integrator {
-            IntegratorPlan::Vpl(plan) => draw.virtual_lights(*medium, plan, pass),
+            IntegratorPlan::Vpl(plan) => draw.virtual_lights(*medium, plan, (emitters, pass)),
             // In empty space nothing is scattered towards the camera.
             IntegratorPlan::PhotonTracer(walk) if !M::IS_EMPTY => draw.photons(*medium, walk),
             _ => Ok((Batch::none(), Spent::default())),
         }
     }
 
-    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(f64, Spent), Failure> {
-        let Self { draw, medium } = self;
+    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(Added<C>, Spent), Failure> {
+        let Self { draw, medium, emitters } = self;
         let clock = ThreadTime::now();
         let volume = draw.volume(*medium);
         let unlawful = Cell::new(None);
-        let integrator = draw.plan.integrator.on(&volume, batch.stage(draw.radiant), &unlawful);
+        let Radiant { lights, surfaces, .. } = draw.radiant;
+        let (camera, Batch { vpls, bound, mean, .. }) = (&draw.plan.camera, batch);
+        let stage = Stage { lights, surfaces, camera, emitters, mean: *mean, vpls, bound: *bound };
+        let integrator = draw.plan.integrator.on(&volume, stage, &unlawful);
         let added = integrator.and_then(|mut integrator| work(&mut *integrator));
         // Before the samples: a look-up that is not finite explains a sample that is not.
         draw.judge(&volume.medium)?;
         if let Some(unlawful) = unlawful.get() {
             return Err(draw.plan.integrator.explain(unlawful));
         }
-        let Added { sum, counts } = added?;
+        let added = added?;
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        let Counts { truncated, compensation_tried, compensation_inside } = counts;
+        let Counts { truncated, compensation_tried, compensation_inside } = added.counts;
+        let Splatted { light_paths, unseen_power, .. } = added.splatted;
         let lookups = volume.medium.lookups();
         let spent = Spent {
             lookups,
@@ -86,21 +94,16 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
             truncated,
             compensation_tried,
             compensation_inside,
+            light_paths,
+            unseen_power,
             ..Spent::default()
         };
-        Ok((sum, spent))
+        Ok((added, spent))
     }
 }
 
-impl<C> Batch<C> {
-    fn stage<'s>(&'s self, radiant: &'s Radiant<C>) -> Stage<'s, C> {
-        let Radiant { lights, surfaces, .. } = radiant;
-        Stage { lights, surfaces, vpls: &self.vpls, bound: self.bound }
-    }
-}
-
-/// Draws a tile: the sum of its samples, and their cost.
-type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> Result<(f64, Spent), Failure> + Sync + 'a;
+/// Draws a tile: what came of it, and the cost.
+type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> Result<(Added<C>, Spent), Failure> + Sync + 'a;
 
 /// The volume of a tile, observed.
 pub(super) type ObservedVolume<'a, M, C> = SceneVolume<'a, Observed<M>, C>;
@@ -130,7 +133,11 @@ impl<'a, C: Spectrum> Draw<'a, C> {
     }
 
     fn within<M: LineThickness + Copy + Sync + 'a>(self, medium: M) -> Box<dyn Scene<C> + 'a> {
-        Box::new(In { draw: self, medium })
+        let Radiant { lights, surfaces, .. } = self.radiant;
+        let volume = self.volume(medium);
+        let world = World::<Seen<'_, _, _, Surfaces<C>>>::new(&volume, surfaces, lights);
+        let emitters = Emitters::new(lights, surfaces, world.enclosing_ball(), self.plan.camera.origin());
+        Box::new(In { draw: self, medium, emitters })
     }
 
     fn add(self, scene: &dyn Scene<C>, canvas: &mut Canvas<C>, samples: u32) -> Result<(), Failure> {
@@ -139,26 +146,36 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         let number = canvas.pass_means.len();
         if number == 0 {
             // Whether they fit together is known before anything is drawn.
-            scene.integrate(&Batch::none(), &mut |_| Ok(Added::default()))?;
+            scene.integrate(&Batch::none(), &mut |_| Ok(Added::none()))?;
             canvas.warning = self.check_growth()?;
         }
-        let (batch, spent) = scene.prepare(number)?;
+        let (mut batch, spent) = scene.prepare(number)?;
+        batch.mean = canvas.mean;
         canvas.cost = canvas.cost.and(spent);
-        let (seed, drawn) = (canvas.seed, canvas.samples);
-        let camera = &self.plan.camera;
-        let added = self.tiles(&mut canvas.tiles, samples, &|tile| {
-            scene.integrate(&batch, &mut |integrator| {
-                tile.add_samples(integrator, camera, (drawn, samples, seed))
+        let (range, camera) = ((canvas.samples, samples, canvas.seed), &self.plan.camera);
+        let mut light = integrator.splats().then(|| LightImage::new(camera.resolution()));
+        let splats = light.is_some();
+        let draw_tile = |tile: &mut Tile<C>| {
+            scene.integrate(&batch, &mut |integrator| match splats {
+                true => tile.hold_samples(integrator, camera, range),
+                false => tile.add_samples(integrator, camera, range),
             })
-        })?;
+        };
         let mut sum = 0.0;
-        for (of_tile, spent) in added {
-            sum += of_tile;
-            canvas.cost = canvas.cost.and(spent);
+        for tiles in canvas.tiles.chunks_mut(if splats { LightImage::<C>::TILES } else { usize::MAX }) {
+            let added = self.tiles(tiles, samples, &draw_tile)?;
+            for (tile, (added, spent)) in tiles.iter_mut().zip(added) {
+                let Splatted { splats, tally, .. } = added.splatted;
+                sum += added.sum + light.as_mut().map_or(0.0, |light| light.add(&splats));
+                tile.tell(&tally);
+                canvas.cost = canvas.cost.and(spent);
+            }
+        }
+        if let Some(light) = light {
+            canvas.tiles.par_iter_mut().for_each(|tile| tile.complete(&light));
         }
         let [columns, rows] = camera.resolution().map(f64::from);
-        canvas.pass_means.push(sum / (columns * rows * f64::from(samples)));
-        canvas.samples += samples;
+        canvas.push_pass(sum / (columns * rows * f64::from(samples)), samples);
         canvas.photons = batch.photons;
         Ok(())
     }
@@ -208,10 +225,10 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         tiles: &mut [Tile<C>],
         samples: u32,
         tile: &DrawTile<'_, C>,
-    ) -> Result<Vec<(f64, Spent)>, Failure> {
+    ) -> Result<Vec<(Added<C>, Spent)>, Failure> {
         // A tile behind the first failure is not drawn; one before it is, since it might fail too.
         let first_failure = AtomicUsize::new(usize::MAX);
-        let done: Vec<Option<Result<(f64, Spent), Failure>>> = tiles
+        let done: Vec<Option<Result<(Added<C>, Spent), Failure>>> = tiles
             .par_iter_mut()
             .enumerate()
             .with_max_len(1)
@@ -266,9 +283,14 @@ mod tests {
             Ok((Batch { bound: number, ..Batch::none() }, Spent { lookups: 7, ..Spent::default() }))
         }
 
-        fn integrate(&self, batch: &Batch<f64>, work: &mut Work<'_, f64>) -> Result<(f64, Spent), Failure> {
-            let Added { sum, counts } = work(&mut Shows(batch.bound))?;
-            Ok((sum, Spent { truncated: counts.truncated, ..Spent::default() }))
+        fn integrate(
+            &self,
+            batch: &Batch<f64>,
+            work: &mut Work<'_, f64>,
+        ) -> Result<(Added<f64>, Spent), Failure> {
+            let added = work(&mut Shows(batch.bound))?;
+            let truncated = added.counts.truncated;
+            Ok((added, Spent { truncated, ..Spent::default() }))
         }
     }
 

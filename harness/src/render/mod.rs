@@ -7,6 +7,7 @@
 mod batch;
 mod canvas;
 mod draw;
+mod light_image;
 mod output;
 mod painting;
 mod passes;

@@ -1,10 +1,10 @@
 //! Statistics of an image: mean radiance, variance, cost, efficiency.
 
-use super::canvas::{Drawn, MeanVariance, Spent};
+use super::canvas::{Drawn, Found, MeanVariance, Spent};
 use super::pixel::Pixel;
 use crate::estimator::Preparation;
 use crate::image::Image;
-use crate::plan::{IntegratorPlan, ScenePlan};
+use crate::plan::{IntegratorPlan, ScenePlan, Tally};
 use crate::result::{Provenance, number};
 use fairflight_scene::Spectrum;
 use serde::Serialize;
@@ -22,6 +22,12 @@ pub(super) struct Statistics {
     pub exposure: Option<ShownAt>,
     /// Null for an integrator without any.
     pub virtual_point_lights: Option<VirtualLights>,
+    /// Light by strategy; left out for an integrator that has one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strategies: Vec<StrategyShare>,
+    /// The power of points and directions that went straight into smooth surfaces and was not followed; left out without light paths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unseen_power: Option<f64>,
     /// Definition of mean squared error and efficiency, in words.
     pub method: String,
     pub warnings: Vec<String>,
@@ -96,6 +102,20 @@ pub(super) struct VirtualLights {
     pub compensation_share_inside: Option<f64>,
 }
 
+/// Light that one strategy found, weighted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct StrategyShare {
+    /// Vertices from a light; null for all strategies of longer paths than those that are told.
+    pub s: Option<u32>,
+    /// Vertices from the camera.
+    pub t: Option<u32>,
+    /// Share of the mean radiance.
+    pub share: f64,
+    /// Variance of one sample in the mean of its channels, averaged over pixels; null for one sample.
+    #[serde(serialize_with = "number")]
+    pub variance: Option<f64>,
+}
+
 /// 1/(MSE · cost), null at zero error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Efficiency {
@@ -118,6 +138,7 @@ pub(crate) struct Moments {
     /// The variance of the mean of all pixels and channels.
     mean_variance: Option<f64>,
     cost: Spent,
+    strategies: Vec<Found>,
     warning: Option<String>,
 }
 
@@ -145,6 +166,7 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
                 MeanVariance::OfPasses(variance) => variance,
             },
             cost: drawn.cost,
+            strategies: drawn.strategies,
             warning: drawn.warning,
         }
     }
@@ -257,6 +279,9 @@ impl Moments {
             },
             exposure,
             virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
+            strategies: self.strategies(),
+            unseen_power: (self.cost.light_paths > 0)
+                .then(|| self.cost.unseen_power / self.cost.light_paths as f64),
             method: format!(
                 "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}",
                 prepared(&plan.integrator)
@@ -264,6 +289,19 @@ impl Moments {
             warnings,
             provenance,
         }
+    }
+
+    /// Light by the strategies that found some.
+    fn strategies(&self) -> Vec<StrategyShare> {
+        let total: f64 = self.strategies.iter().map(|found| found.mean).sum();
+        let told = Tally::strategies().zip(&self.strategies).filter(|(_, found)| found.mean != 0.0);
+        told.map(|(strategy, found)| StrategyShare {
+            s: strategy.map(|strategy| strategy.light),
+            t: strategy.map(|strategy| strategy.eye),
+            share: found.mean / total,
+            variance: found.variance,
+        })
+        .collect()
     }
 
     /// The share of compensation vertices that lay where something was lost; `None` if none was tried.

@@ -1,8 +1,9 @@
 //! A rectangle of pixels: one worker's piece of work, with one integrator.
 
+use super::light_image::LightImage;
 use super::pixel::Pixel;
 use crate::Failure;
-use crate::plan::{Counts, TileIntegrator};
+use crate::plan::{Counts, Splatted, Tally, TileIntegrator};
 use fairflight_scene::{Camera, Spectrum};
 use fairflight_sources::{Seeded, UniformSource};
 
@@ -53,13 +54,19 @@ pub(super) struct Tile<C> {
     /// Pixels, row by row.
     pixels: Vec<Pixel<C>>,
     sources: Vec<Seeded>,
+    /// Samples of a pass that wait for the light image.
+    waiting: Vec<C>,
+    /// The sums of each pass by strategy.
+    strategies: Vec<Pixel<f64>>,
 }
 
 impl<C: Spectrum> Tile<C> {
     /// Memory that a pixel takes until it is written: its moments here and in the finished image, its stream,
     /// its mean \[bytes\].
-    pub(super) const BYTES_PER_PIXEL: usize =
-        2 * size_of::<Pixel<C>>() + size_of::<Seeded>() + size_of::<[f64; 3]>() + size_of::<[f32; 3]>();
+    pub(super) const BYTES_PER_PIXEL: usize = 2 * (size_of::<Pixel<C>>() + size_of::<C>())
+        + size_of::<Seeded>()
+        + size_of::<[f64; 3]>()
+        + size_of::<[f32; 3]>();
 
     /// The tiles of an image without samples: a stream of its own for each pixel, whatever the tiles.
     pub(super) fn all(resolution: [u32; 2], seed: u64) -> Vec<Self> {
@@ -69,7 +76,8 @@ impl<C: Spectrum> Tile<C> {
         };
         let tile = |area: Area| {
             let sources: Vec<Seeded> = area.positions().map(source).collect();
-            Self { area, pixels: vec![Pixel::new(); sources.len()], sources }
+            let pixels = vec![Pixel::new(); sources.len()];
+            Self { area, pixels, sources, waiting: Vec::new(), strategies: Vec::new() }
         };
         areas(resolution).into_iter().map(tile).collect()
     }
@@ -82,8 +90,52 @@ impl<C: Spectrum> Tile<C> {
         &mut self,
         integrator: &mut dyn TileIntegrator<C>,
         camera: &Camera,
+        range: (u32, u32, u64),
+    ) -> Result<Added<C>, Failure> {
+        self.draw(integrator, camera, range, |pixel, _, radiance| pixel.push(radiance))
+    }
+
+    /// Draws one sample of each pixel, which wait for what other pixels' light paths add to them.
+    ///
+    /// # Errors
+    /// If a sample is not finite.
+    pub(super) fn hold_samples(
+        &mut self,
+        integrator: &mut dyn TileIntegrator<C>,
+        camera: &Camera,
+        range: (u32, u32, u64),
+    ) -> Result<Added<C>, Failure> {
+        self.draw(integrator, camera, range, |_, waiting, radiance| waiting.push(radiance))
+    }
+
+    /// Completes the samples that wait.
+    pub(super) fn complete(&mut self, light: &LightImage<C>) {
+        let samples = self.waiting.drain(..).zip(self.area.positions());
+        for (pixel, (radiance, position)) in self.pixels.iter_mut().zip(samples) {
+            pixel.push(radiance + light.at(position));
+        }
+    }
+
+    /// Adds the sums of a pass by strategy.
+    pub(super) fn tell(&mut self, tally: &Tally) {
+        self.strategies.resize(tally.sums().len(), Pixel::new());
+        for (moments, &sum) in self.strategies.iter_mut().zip(tally.sums()) {
+            moments.push(sum);
+        }
+    }
+
+    /// The moments of those sums; none if nothing was told.
+    pub(super) fn strategies(&self) -> &[Pixel<f64>] {
+        &self.strategies
+    }
+
+    fn draw(
+        &mut self,
+        integrator: &mut dyn TileIntegrator<C>,
+        camera: &Camera,
         (drawn, samples, seed): (u32, u32, u64),
-    ) -> Result<Added, Failure> {
+        take: impl Fn(&mut Pixel<C>, &mut Vec<C>, C),
+    ) -> Result<Added<C>, Failure> {
         let mut sum = 0.0;
         let pixels = self.pixels.iter_mut().zip(&mut self.sources);
         for (position, (pixel, source)) in self.area.positions().zip(pixels) {
@@ -92,17 +144,18 @@ impl<C: Spectrum> Tile<C> {
                 let radiance = integrator.radiance(&camera.ray(position, within), source);
                 if !radiance.is_finite() {
                     let [column, row] = position;
+                    let by = integrator.culprit().map_or_else(String::new, |what| format!(" by {what}"));
                     return Err(Failure::refused(format!(
-                        "the radiance of pixel (column {column}, row {row}), sample {}, seed {seed} is {:?}",
+                        "the radiance of pixel (column {column}, row {row}), sample {}, seed {seed} is {:?}{by}",
                         drawn + i,
                         radiance.rgb()
                     )));
                 }
                 sum += radiance.mean();
-                pixel.push(radiance);
+                take(pixel, &mut self.waiting, radiance);
             }
         }
-        Ok(Added { sum, counts: integrator.counts() })
+        Ok(Added { sum, counts: integrator.counts(), splatted: integrator.splatted() })
     }
 
     /// Copies the pixels to where they are in an image of so many columns.
@@ -116,12 +169,21 @@ impl<C: Spectrum> Tile<C> {
 }
 
 /// The samples that a pass added to a tile.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Added {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Added<C> {
     /// The sum of all samples, in the mean of their channels.
     pub sum: f64,
     /// Events of the integrator.
     pub counts: Counts,
+    /// Light for other pixels, too.
+    pub splatted: Splatted<C>,
+}
+
+impl<C> Added<C> {
+    /// Nothing.
+    pub(super) fn none() -> Self {
+        Self { sum: 0.0, counts: Counts::default(), splatted: Splatted::none() }
+    }
 }
 
 #[cfg(test)]

@@ -37,13 +37,13 @@ impl<C: Spectrum> Draw<'_, C> {
         &self,
         medium: M,
         plan: &VplPlan,
-        pass: usize,
+        (emitters, pass): (&Emitters<C>, usize),
     ) -> Result<(Batch<C>, Spent), Failure> {
         let surfaces = &self.radiant.surfaces;
         if !M::IS_EMPTY && surfaces.surfaces().is_empty() {
-            self.among(&NoSurfaces, medium, plan, pass)
+            self.among(&NoSurfaces, medium, plan, (emitters, pass))
         } else {
-            self.among(surfaces, medium, plan, pass)
+            self.among(surfaces, medium, plan, (emitters, pass))
         }
     }
 
@@ -52,12 +52,8 @@ impl<C: Spectrum> Draw<'_, C> {
         surfaces: &G,
         medium: M,
         plan: &VplPlan,
-        pass: usize,
+        (emitters, pass): (&Emitters<C>, usize),
     ) -> Result<(Batch<C>, Spent), Failure> {
-        let volume = self.volume(medium);
-        let world = World::<Seen<'_, _, _, _>>::new(&volume, surfaces, &self.radiant.lights);
-        let observer = self.plan.camera.origin();
-        let emitters = Emitters::new(&self.radiant.lights, surfaces, world.enclosing_ball(), observer);
         let bound = plan.bound(self.radiant, &self.plan.phase, emitters.power().max_channel())?;
         let is_dark = emitters.power().max_channel() <= 0.0;
         let trace = |stream: u64, paths: u32, share: f64| {
@@ -65,7 +61,7 @@ impl<C: Spectrum> Draw<'_, C> {
                 surfaces,
                 medium,
                 plan,
-                &emitters,
+                emitters,
                 (derive_seed(stream, pass as u64), paths, share),
             )
         };

@@ -3,7 +3,10 @@
 use super::passes::End;
 use super::statistics::Moments;
 use crate::plan::{IntegratorPlan, ScenePlan};
-use crate::spec::{ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, SceneSpec, SurfaceSpec};
+use crate::spec::{
+    BidirectionalSpec, ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, PathTracerSpec, SceneSpec,
+    SurfaceSpec,
+};
 
 /// The warnings; without an `end`, those of an image that is still being drawn.
 pub(super) fn warnings(
@@ -23,7 +26,10 @@ pub(super) fn warnings(
         && moments.truncated() > 0
     {
         let limit = match &spec.integrator {
-            IntegratorSpec::PathTracer(tracer) => format!("max_vertices = {} or ", tracer.max_vertices),
+            IntegratorSpec::PathTracer(PathTracerSpec { max_vertices, .. })
+            | IntegratorSpec::Bidirectional(BidirectionalSpec { max_vertices, .. }) => {
+                format!("max_vertices = {max_vertices} or ")
+            }
             IntegratorSpec::Vpl(_) => "too many vertices or ".to_owned(),
             _ => String::new(),
         };
@@ -44,22 +50,28 @@ pub(super) fn warnings(
                 .to_owned(),
         );
     }
-    if spec.integrator.walk().is_some() && !photons && spec.medium.is_some() && spec.lights.iter().any(inside)
-    {
+    // Weighted against the light image a connection is bounded.
+    let bounded = matches!(&spec.integrator, IntegratorSpec::Bidirectional(spec) if spec.light_image);
+    let connected = spec.integrator.walk().is_some() && !photons && !bounded && spec.medium.is_some();
+    if connected && spec.lights.iter().any(inside) {
         warnings.push(
             "a point light lies in the medium: the connection with it has no second moment, errors are underrated"
                 .to_owned(),
         );
     }
-    let connects = matches!(spec.integrator, IntegratorSpec::PathTracer(_) | IntegratorSpec::Vpl(_));
+    let caustics = matches!(&spec.integrator, IntegratorSpec::Bidirectional(spec) if spec.point_caustics);
     let is_smooth = |surface: &SurfaceSpec| !matches!(surface.material, MaterialSpec::Diffuse(_));
     let no_extent = |light: &LightSpec| matches!(light, LightSpec::Point(_) | LightSpec::Directional(_));
-    if connects && spec.surfaces.iter().any(is_smooth) && spec.lights.iter().any(no_extent) {
-        warnings.push(
+    let passed_on = spec.surfaces.iter().any(is_smooth) && spec.lights.iter().any(no_extent);
+    if passed_on && spec.integrator.kind().transport().is_some() {
+        let missing = if caustics {
+            "light of points and directions is missing where smooth surfaces show what smooth surfaces pass on: no strategy connects \
+             such a path"
+        } else {
             "light of points and directions that smooth surfaces pass on is missing: no path from the camera meets it by chance, \
              and virtual point lights leave it out alike"
-                .to_owned(),
-        );
+        };
+        warnings.push(missing.to_owned());
     }
     let unbounded = matches!(&spec.integrator, IntegratorSpec::Vpl(vpl) if vpl.clamp == ClampSpec::Unclamped);
     if unbounded && spec.medium.is_some() {

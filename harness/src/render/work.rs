@@ -103,7 +103,9 @@ pub(super) fn check(
                     let lookups = walks.virtual_lights(vpl, (f64::from(samples), paths), shadow)?;
                     ("integrator.light_paths", lookups)
                 }
-                IntegratorSpec::PathTracer(_) if shadow > MOST_ORDINARY => {
+                IntegratorSpec::PathTracer(_) | IntegratorSpec::Bidirectional(_)
+                    if shadow > MOST_ORDINARY =>
+                {
                     ("integrator.estimator", paths * walks.each)
                 }
                 _ => ("integrator.sigma_samp", paths * walks.each),
@@ -197,16 +199,12 @@ impl Chords {
     /// Look-ups that no limit of collisions cuts: of a shadow ray or a connection, over half of the bounds; of the background behind
     /// photons, by ratio tracking; of the first flight of a split.
     fn shadow(&self, integrator: &IntegratorSpec, plan: &ScenePlan) -> f64 {
-        let transport = match integrator {
-            IntegratorSpec::PathTracer(spec) => &spec.transport,
-            IntegratorSpec::Vpl(spec) => &spec.transport,
-            IntegratorSpec::LineSplitting(LineSplittingSpec { majorant, .. }) => {
-                return (majorant * self.mean * self.passed).max(1.0);
-            }
-            _ => {
-                let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
-                return if photons { (rate(plan) * self.mean).max(1.0) } else { 1.0 };
-            }
+        if let IntegratorSpec::LineSplitting(LineSplittingSpec { majorant, .. }) = integrator {
+            return (majorant * self.mean * self.passed).max(1.0);
+        }
+        let Some(transport) = integrator.kind().transport() else {
+            let photons = matches!(plan.integrator, IntegratorPlan::PhotonTracer(_));
+            return if photons { (rate(plan) * self.mean).max(1.0) } else { 1.0 };
         };
         let inside = Self { mean: self.extent, profile: None, ..*self };
         match &transport.estimator {
@@ -254,6 +252,7 @@ impl Walks {
         let mut scale = 1.0;
         match &mut pilot.integrator {
             IntegratorSpec::PathTracer(tracer) => tracer.max_vertices = tracer.max_vertices.min(most as u32),
+            IntegratorSpec::Bidirectional(spec) => spec.max_vertices = spec.max_vertices.min(most as u32),
             IntegratorSpec::Vpl(vpl) => {
                 vpl.light_paths = vpl.light_paths.min(LIGHT_PATHS);
                 vpl.local_mean_cells = vpl.local_mean_cells.min(MEAN_CELLS);

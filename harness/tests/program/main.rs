@@ -1,6 +1,7 @@
 //! The program, driven as a user would: arguments and streams in, exit code, streams and files out.
 
 mod beyond;
+mod bidirectional;
 mod budget;
 mod common;
 mod estimate;

@@ -40,13 +40,13 @@ fn rendered(scene: &Value, folder: &Path, names: &[&str], more: &[&str]) -> Vec<
 }
 
 #[track_caller]
-fn statistics(scene: &Value, more: &[&str]) -> Value {
+pub(crate) fn statistics(scene: &Value, more: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let paths = rendered(scene, folder.path(), &["statistics.json"], more);
     serde_json::from_slice(&std::fs::read(&paths[0]).unwrap()).unwrap()
 }
 
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 

@@ -18,12 +18,13 @@ struct Place {
     key: &'static str,
 }
 
-const PLACES: [Place; 5] = [
+const PLACES: [Place; 6] = [
     Place { integrator: "transmittance", key: "estimator" },
     Place { integrator: "single_scattering", key: "estimator" },
     Place { integrator: "single_scattering", key: "shadow" },
     Place { integrator: "path_tracer", key: "estimator" },
     Place { integrator: "vpl", key: "estimator" },
+    Place { integrator: "bidirectional", key: "estimator" },
 ];
 
 impl Place {
@@ -44,9 +45,14 @@ impl Place {
         }
     }
 
-    /// Samples per pixel that tell half of the extinction from all of it: the light of four light paths is noisy.
+    /// Samples per pixel that tell half of the extinction from all of it: the light of four light paths is noisy, and so is that which one
+    /// light path brings to a few pixels.
     fn samples(self) -> u32 {
-        if self.integrator == "vpl" { 2000 } else { 120 }
+        match self.integrator {
+            "vpl" => 2000,
+            "bidirectional" => 600,
+            _ => 120,
+        }
     }
 
     fn integrator(self, estimator: &Value) -> Value {
@@ -55,7 +61,7 @@ impl Place {
             "single_scattering" => {
                 json!({ "sampling": "attenuation", "samples_per_ray": 1, "estimator": { "kind": "double_particle", "sigma_samp": 1 } })
             }
-            "path_tracer" => json!({ "max_vertices": 3 }),
+            "path_tracer" | "bidirectional" => json!({ "max_vertices": 3 }),
             "vpl" => json!({ "light_paths": 4, "clamp": 1 }),
             other => panic!("{other}"),
         };

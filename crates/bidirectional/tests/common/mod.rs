@@ -23,6 +23,8 @@ pub const ALL: [Heuristic; 3] = [Heuristic::Balance, Heuristic::Power, Heuristic
 
 pub struct Scene<M> {
     pub camera: Camera,
+    /// For a sample of a pixel: 1, or 0 without a light image.
+    pub light_paths_per_pixel: f64,
     pub volume: Volume<M, HenyeyGreenstein, f64>,
     pub surfaces: Surfaces<f64>,
     pub lights: Lights<f64>,
@@ -57,7 +59,7 @@ impl<M: Medium> Scene<M> {
         heuristic: Heuristic,
         thickness: K,
     ) -> Weigh<'s, Made<M, T>, K> {
-        let light_paths = self.pixels();
+        let light_paths = self.light_paths_per_pixel * self.pixels();
         Weigh { world: self.world(), camera: &self.camera, emitters, thickness, heuristic, light_paths }
     }
 }
@@ -75,6 +77,9 @@ pub fn sample<M: Medium, T: RayTransmittance<M>, K: WeightThickness<M>>(
     let line = integrator.weigh().camera.ray(pixel, within);
     integrator.strategies(&line, light, source, |eye, found| each(found, eye, light));
     let none = Subpath::empty();
+    if integrator.weigh().light_paths == 0.0 {
+        return;
+    }
     for index in 0..light.steps.len() {
         if let Some((_, found)) = integrator.splat(light, index, source) {
             each(found, &none, light);
@@ -130,6 +135,7 @@ fn scene<M>(
     let phase = HenyeyGreenstein::new(g).unwrap();
     Scene {
         camera: camera(),
+        light_paths_per_pixel: 1.0,
         volume: Volume { medium, bounds, albedo, phase },
         surfaces: Surfaces::new(surfaces),
         lights,

@@ -1,5 +1,6 @@
 //! Every check by name: what `verify` runs.
 
+mod bidirectional;
 mod exact;
 mod exactly;
 mod freeflight;
@@ -50,6 +51,10 @@ pub enum Law {
     Phase,
     /// An integrator's expectation is the radiance of the equation of transfer.
     Radiance,
+    /// The weights of all strategies of a path sum to one.
+    Partition,
+    /// Two strategies, each weighted by both, find the same light.
+    Pair,
     /// Importons and photons have the same expectation.
     Adjoint,
     /// Bounded connections and their compensation add up to unbounded ones.
@@ -80,6 +85,8 @@ impl Law {
             Self::Collision => "collision",
             Self::Phase => "phase",
             Self::Radiance => "radiance",
+            Self::Partition => "partition",
+            Self::Pair => "pair",
             Self::Adjoint => "adjoint",
             Self::Compensation => "compensation",
             Self::Energy => "energy",
@@ -108,7 +115,7 @@ pub enum Effort {
 #[derive(Debug)]
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`, `hybrid/medium/estimator`,
-    /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `collision/model`,
+    /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `bidirectional/what/which`, `collision/model`,
     /// `phase/name`, `exact/what/which`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -162,6 +169,7 @@ impl Check {
                 | Law::FreeFlight
                 | Law::Phase
                 | Law::Radiance
+                | Law::Pair
                 | Law::Adjoint
                 | Law::Compensation
                 | Law::Energy,
@@ -183,7 +191,7 @@ impl Check {
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
     let mut checks = joined!(
-        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, exactly
+        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, bidirectional, exactly
     );
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());

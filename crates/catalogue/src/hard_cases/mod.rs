@@ -8,6 +8,7 @@ mod anisotropy;
 mod by_kind;
 mod collisions;
 mod connections;
+mod densities;
 mod far;
 mod heavy_tails;
 mod judging;
@@ -164,7 +165,7 @@ impl HardCase {
 pub fn hard_cases() -> Vec<HardCase> {
     let mut cases = joined!(
         cases of vacuum, signed, collisions, thickness, voxel_faces, far, refusals,
-        heavy_tails, spectral, anisotropy, connections
+        heavy_tails, spectral, anisotropy, connections, densities
     );
     let table = by_kind::cases(&cases).into_iter().map(|case| HardCase { of_table: true, ..case });
     cases.extend(table);

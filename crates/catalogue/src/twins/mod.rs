@@ -3,6 +3,7 @@
 //! A law that nothing can break tests nothing. Each statistical twin states its profile, its N and the |z| that it shows
 //! there, far above what is critical; each deterministic one is rejected by an exact assertion.
 
+mod bidirectional;
 mod exactly;
 mod freeflight;
 mod jittered_flight;
@@ -136,6 +137,6 @@ impl Twin {
 #[must_use]
 pub fn twins() -> Vec<Twin> {
     joined!(
-        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, vpl
+        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, vpl, bidirectional
     )
 }

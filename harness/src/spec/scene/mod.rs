@@ -10,9 +10,9 @@ mod volume;
 
 pub use colour::ColourSpec;
 pub use integrator::{
-    ClampSpec, Collisions, ComponentSpec, IntegratorKind, IntegratorSpec, LineSplittingSpec, Particles,
-    PathTracerSpec, SamplingFieldSpec, SingleScatteringSpec, Strategy, TracerSpec, TransmittanceSpec,
-    TransportSpec, VplSpec, WalkSpec,
+    BidirectionalSpec, ClampSpec, Collisions, ComponentSpec, IntegratorKind, IntegratorSpec,
+    LineSplittingSpec, Particles, PathTracerSpec, SamplingFieldSpec, SingleScatteringSpec, Strategy,
+    ThicknessSpec, TracerSpec, TransmittanceSpec, TransportSpec, VplSpec, WalkSpec,
 };
 pub use light::{DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec, LightSpec, PointSpec};
 pub use phase::{PhaseKind, PhaseSpec};

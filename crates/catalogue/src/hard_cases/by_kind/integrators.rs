@@ -2,6 +2,7 @@
 
 use super::ends::End;
 use crate::hard_cases::{HardCase, LAWFUL, Outcome, vacuum};
+use fairflight_bidirectional::{Bidirectional, Neglected, Subpath, Walking, Weigh};
 use fairflight_collision::Version;
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
 use fairflight_media::phase::HenyeyGreenstein;
@@ -11,7 +12,7 @@ use fairflight_paths::transport::World;
 use fairflight_paths::{
     Attenuation, Heuristic, Integrator, LineSplitting, ParticleTracer, PathTracer, Ratio, Uniform, Walk,
 };
-use fairflight_scene::{Background, Lights, NoSurfaces, Volume};
+use fairflight_scene::{Background, Camera, Lights, NoSurfaces, Volume};
 use fairflight_sources::{LARGEST_VARIATE, Seeded, UniformSource};
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
 use fairflight_vpl::{Emitters, Gather, Ledger, LightPaths, Term, VplIntegrator};
@@ -45,13 +46,14 @@ enum Exact {
     Vacuum,
 }
 
-const INTEGRATORS: [(&str, Exact, Radiance); 6] = [
+const INTEGRATORS: [(&str, Exact, Radiance); 7] = [
     ("transmittance", Exact::Absorbing, transmittance),
     ("particle_tracer", Exact::Furnace, particle_tracer),
     ("line_splitting", Exact::Furnace, line_splitting),
     ("single_scattering", Exact::Absorbing, single_scattering),
     ("path_tracer", Exact::Furnace, path_tracer),
     ("vpl", Exact::Vacuum, vpl),
+    ("bidirectional", Exact::Vacuum, bidirectional),
 ];
 
 /// Tells whether a kind is an integrator.
@@ -132,6 +134,22 @@ fn vpl(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let correction = Compensation::new(CompensationOptions::EXACT, &mean);
     let pairing = correction.pairing();
     VplIntegrator::new(gather, (1, pairing), correction).radiance(line, &mut source)
+}
+
+/// The strategies of one camera ray.
+fn bidirectional(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
+    let (volume, lights) = (ball.volume(), lights());
+    let world = World::new(&volume, &NoSurfaces, &lights);
+    let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
+    let up = if line.direction.cross(DVec3::Y) == DVec3::ZERO { DVec3::X } else { DVec3::Y };
+    let at = line.origin + line.direction;
+    let camera = Camera::new(line.origin, at, up, 1.0, [1, 1]).expect(LAWFUL);
+    let (thickness, heuristic) = (Neglected, Heuristic::Balance);
+    let weigh = Weigh { world, camera: &camera, emitters: &emitters, thickness, heuristic, light_paths: 1.0 };
+    let mut integrator = Bidirectional::new(weigh, Walking::new(ball.walk()), Regular);
+    let mut light = Subpath::empty();
+    integrator.trace_light(&mut light, &mut source);
+    integrator.radiance(line, &light, &mut source)
 }
 
 /// Estimates of one case.

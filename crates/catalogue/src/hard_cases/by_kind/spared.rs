@@ -66,7 +66,11 @@ struct Reason {
     why: &'static str,
 }
 
-const REASONS: [Reason; 18] = [
+/// Integrators that connect no vertices of two paths.
+const UNCONNECTED: [&str; 5] =
+    ["transmittance", "particle_tracer", "line_splitting", "single_scattering", "path_tracer"];
+
+const REASONS: [Reason; 20] = [
     Reason {
         rows: &[3, 13, 21],
         kinds: Kinds::Integrators,
@@ -89,19 +93,19 @@ const REASONS: [Reason; 18] = [
         why: "whoever renders watches the medium, not the integrator: tests of the program",
     },
     Reason {
-        rows: &[17, 18],
-        kinds: Kinds::These(&[
-            "transmittance",
-            "particle_tracer",
-            "line_splitting",
-            "single_scattering",
-            "path_tracer",
-        ]),
-        why: "it has no virtual lights",
+        rows: &[17],
+        kinds: Kinds::These(&["bidirectional"]),
+        why: "its distances are those of walks, which do not end before the medium does",
+    },
+    Reason { rows: &[17, 18], kinds: Kinds::These(&UNCONNECTED), why: "it has no virtual lights" },
+    Reason {
+        rows: &[19],
+        kinds: Kinds::These(&["vpl"]),
+        why: "its light paths have no densities but that of their start",
     },
     Reason {
         rows: &[19],
-        kinds: Kinds::Integrators,
+        kinds: Kinds::These(&UNCONNECTED),
         why: "its techniques are weighed vertex by vertex: no densities are multiplied along a path",
     },
     Reason { rows: &[6, 22], kinds: Kinds::Gray, why: "it has one wavelength" },

@@ -1,5 +1,6 @@
 //! Integrators: one file per kind, with its keys; the list of all.
 
+mod bidirectional;
 mod line_splitting;
 mod particle_tracer;
 mod path_tracer;
@@ -9,6 +10,7 @@ mod transport;
 mod vpl;
 mod walk;
 
+pub use bidirectional::{BidirectionalSpec, ThicknessSpec};
 pub use line_splitting::LineSplittingSpec;
 pub use particle_tracer::{Particles, TracerSpec};
 pub use path_tracer::PathTracerSpec;
@@ -29,19 +31,20 @@ registry! {
         SingleScattering(SingleScatteringSpec),
         PathTracer(PathTracerSpec),
         Vpl(VplSpec),
+        Bidirectional(BidirectionalSpec),
     }
 }
 
 /// A kind of integrators: its walks, its surfaces, its bias.
 pub trait IntegratorKind {
-    /// Walks of the integrator, if it has some.
-    fn walk(&self) -> Option<&WalkSpec> {
+    /// The flights, connections and weights of its paths among surfaces; none of an integrator that knows no surfaces.
+    fn transport(&self) -> Option<&TransportSpec> {
         None
     }
 
-    /// True if it takes account of surfaces.
-    fn knows_surfaces(&self) -> bool {
-        false
+    /// Walks of the integrator, if it has some.
+    fn walk(&self) -> Option<&WalkSpec> {
+        self.transport().map(|transport| &transport.walk)
     }
 
     /// The part that is biased by design, if any.
@@ -73,6 +76,7 @@ impl IntegratorSpec {
             Self::LineSplitting(spec) => Some(&mut spec.walk),
             Self::PathTracer(spec) => Some(&mut spec.transport.walk),
             Self::Vpl(spec) => Some(&mut spec.transport.walk),
+            Self::Bidirectional(spec) => Some(&mut spec.transport.walk),
             Self::Transmittance(_) | Self::SingleScattering(_) => None,
         }
     }

@@ -2,7 +2,6 @@
 
 use super::IntegratorKind;
 use super::transport::TransportSpec;
-use crate::estimator::EstimatorSpec;
 use crate::kind;
 use crate::reader::kind::Among;
 use crate::reader::rule::Whole;
@@ -29,13 +28,10 @@ impl PathTracerSpec {
 }
 
 impl IntegratorKind for PathTracerSpec {
-    fn walk(&self) -> Option<&super::WalkSpec> {
-        Some(&self.transport.walk)
-    }
-    fn knows_surfaces(&self) -> bool {
-        true
+    fn transport(&self) -> Option<&TransportSpec> {
+        Some(&self.transport)
     }
     fn bias(&self) -> Option<&'static str> {
-        super::of_a_baseline(self.transport.estimator.as_ref().is_some_and(EstimatorSpec::is_biased_baseline))
+        super::of_a_baseline(self.transport.is_biased_baseline())
     }
 }

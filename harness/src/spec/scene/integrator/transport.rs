@@ -32,6 +32,14 @@ keys! {
     }
 }
 
+impl TransportSpec {
+    /// True if the transmittance of connections is that of a biased baseline.
+    #[must_use]
+    pub fn is_biased_baseline(&self) -> bool {
+        self.estimator.as_ref().is_some_and(EstimatorSpec::is_biased_baseline)
+    }
+}
+
 keys! {
     /// A walk whose version and sampling extinction may be left out.
     pub(super) UsualWalk {

@@ -3,9 +3,8 @@
 use super::IntegratorKind;
 use super::path_tracer::MOST_VERTICES;
 use super::transport::TransportSpec;
-use crate::estimator::EstimatorSpec;
 use crate::reader::kind::Among;
-use crate::reader::rule::{Maybe, Own, Positive, Rule, Ruled, Whole};
+use crate::reader::rule::{Maybe, Nullable, Own, Positive, Rule, Ruled, Whole};
 use crate::reader::{Node, Object};
 use crate::{Failure, keys, kind, words};
 use fairflight_compensation::{CompensationOptions, Placement, Strategy, TransmittanceUse, Visibility};
@@ -150,22 +149,6 @@ keys! {
     }
 }
 
-/// A value that keeps the rule `R`, or null.
-#[derive(Debug)]
-pub(super) struct Nullable<R>(std::marker::PhantomData<R>);
-
-impl<T, R: Rule<T>> Rule<Option<T>> for Nullable<R> {
-    fn read(node: &Node<'_>) -> Result<Option<T>, Failure> {
-        if node.is_null() { Ok(None) } else { R::read(node).map(Some) }
-    }
-    fn written(value: &Option<T>) -> Value {
-        value.as_ref().map_or(Value::Null, R::written)
-    }
-    fn schema() -> Value {
-        json!({ "anyOf": [R::schema(), { "type": "null" }] })
-    }
-}
-
 /// An object of strategy, placement, transmittance, steps and visibility, or null.
 #[derive(Debug)]
 pub(super) struct CompensationRule;
@@ -217,18 +200,14 @@ impl VplSpec {
 }
 
 impl IntegratorKind for VplSpec {
-    fn walk(&self) -> Option<&super::WalkSpec> {
-        Some(&self.transport.walk)
-    }
-
-    fn knows_surfaces(&self) -> bool {
-        true
+    fn transport(&self) -> Option<&TransportSpec> {
+        Some(&self.transport)
     }
 
     fn bias(&self) -> Option<&'static str> {
         if self.component != ComponentSpec::All {
             Some("component: a part of the light only")
-        } else if self.transport.estimator.as_ref().is_some_and(EstimatorSpec::is_biased_baseline) {
+        } else if self.transport.is_biased_baseline() {
             Some(super::BASELINE)
         } else if self.clamp == ClampSpec::Unclamped {
             None
