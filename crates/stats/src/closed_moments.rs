@@ -8,61 +8,31 @@
 /// ```
 /// use fairflight_stats::ClosedMoments;
 /// let exponential = ClosedMoments::from_raw(&[1.0, 2.0, 6.0, 24.0]);
-/// assert_eq!(exponential.variance, Some(1.0));
+/// assert_eq!(exponential.variance(), Some(1.0));
 /// assert_eq!(exponential.skewness(), Some(2.0));
 /// assert_eq!(exponential.excess_kurtosis(), Some(6.0));
-/// assert_eq!(exponential.sixth, None);
+/// assert_eq!(exponential.central(6), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedMoments {
     /// E\[X\].
     pub mean: f64,
-    /// mu_2 = Var(X).
-    pub variance: Option<f64>,
-    /// mu_3.
-    pub third: Option<f64>,
-    /// mu_4.
-    pub fourth: Option<f64>,
-    /// mu_5.
-    pub fifth: Option<f64>,
-    /// mu_6.
-    pub sixth: Option<f64>,
-    /// mu_7.
-    pub seventh: Option<f64>,
-    /// mu_8.
-    pub eighth: Option<f64>,
+    /// mu_2 to mu_8.
+    central: [Option<f64>; 7],
 }
 
 impl ClosedMoments {
-    /// A law of which only the mean is known: the base of a struct update.
+    /// A law of which only the mean is known.
     #[must_use]
     pub const fn with_mean(mean: f64) -> Self {
-        Self {
-            mean,
-            variance: None,
-            third: None,
-            fourth: None,
-            fifth: None,
-            sixth: None,
-            seventh: None,
-            eighth: None,
-        }
+        Self { mean, central: [None; 7] }
     }
 
     /// The moments by the mean and mu_2, mu_3, ... in order; missing ones are not known, those beyond mu_8 are ignored.
     #[must_use]
     pub fn from_central(mean: f64, central: &[Option<f64>]) -> Self {
-        let moment = |k: usize| central.get(k - 2).copied().flatten().filter(|value| !value.is_nan());
-        Self {
-            mean,
-            variance: moment(2),
-            third: moment(3),
-            fourth: moment(4),
-            fifth: moment(5),
-            sixth: moment(6),
-            seventh: moment(7),
-            eighth: moment(8),
-        }
+        let moment = |i: usize| central.get(i).copied().flatten().filter(|value| !value.is_nan());
+        Self { mean, central: std::array::from_fn(moment) }
     }
 
     /// The moments by the raw moments E\[X\], E\[X^2\], ... in order; NaN for an unknown one. An empty slice gives the mean NaN.
@@ -104,11 +74,23 @@ impl ClosedMoments {
         Self::from_central(high * p, &[2, 3, 4, 5, 6, 7, 8].map(central))
     }
 
+    /// mu_k, k = 2 to 8; `None` where it is not known.
+    #[must_use]
+    pub fn central(&self, k: usize) -> Option<f64> {
+        self.central[k - 2]
+    }
+
+    /// mu_2 = Var(X).
+    #[must_use]
+    pub fn variance(&self) -> Option<f64> {
+        self.central(2)
+    }
+
     /// mu_3/mu_2^(3/2); `None` where unknown or undefined (variance zero or infinite).
     #[must_use]
     pub fn skewness(&self) -> Option<f64> {
         let variance = self.positive_variance()?;
-        self.third.map(|third| third / variance / variance.sqrt())
+        self.central(3).map(|third| third / variance / variance.sqrt())
     }
 
     /// mu_4/mu_2^2 - 3; `None` where unknown or undefined (variance zero or infinite, mu_4 underflown).
@@ -123,7 +105,7 @@ impl ClosedMoments {
     #[must_use]
     pub fn squares_skewness(&self) -> Option<f64> {
         let (variance, fourth, spread) = self.squares()?;
-        let sixth = self.sixth? / variance / variance / variance;
+        let sixth = self.central(6)? / variance / variance / variance;
         Some((sixth - 3.0 * fourth + 2.0) / spread / spread.sqrt())
     }
 
@@ -131,8 +113,8 @@ impl ClosedMoments {
     #[must_use]
     pub fn squares_excess_kurtosis(&self) -> Option<f64> {
         let (variance, fourth, spread) = self.squares()?;
-        let sixth = self.sixth? / variance / variance / variance;
-        let eighth = self.eighth? / variance / variance / variance / variance;
+        let sixth = self.central(6)? / variance / variance / variance;
+        let eighth = self.central(8)? / variance / variance / variance / variance;
         if eighth.is_infinite() {
             return Some(f64::INFINITY);
         }
@@ -142,7 +124,7 @@ impl ClosedMoments {
     /// Standard error of the mean of n values, sqrt(mu_2/n); may be infinite, `None` where mu_2 is unknown.
     #[must_use]
     pub fn standard_error(&self, n: f64) -> Option<f64> {
-        self.variance.map(|variance| (variance / n).sqrt())
+        self.variance().map(|variance| (variance / n).sqrt())
     }
 
     /// Standard error of the sample variance of n >= 2 values: Var(s^2) = (mu_4 - mu_2^2 (n-3)/(n-1))/n.
@@ -150,22 +132,22 @@ impl ClosedMoments {
     /// `None` where unknown or underflown, zero for zero variance; may be infinite.
     #[must_use]
     pub fn variance_standard_error(&self, n: f64) -> Option<f64> {
-        if self.variance == Some(0.0) {
+        if self.variance() == Some(0.0) {
             return Some(0.0);
         }
         let fourth = self.standardised_fourth()?;
-        Some(self.variance? * ((fourth - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt())
+        Some(self.variance()? * ((fourth - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt())
     }
 
     fn positive_variance(&self) -> Option<f64> {
-        self.variance.filter(|&variance| variance > 0.0 && variance.is_finite())
+        self.variance().filter(|&variance| variance > 0.0 && variance.is_finite())
     }
 
     /// a_4 = mu_4/mu_2^2, which is at least 1 unless mu_4 underflowed.
     fn standardised_fourth(&self) -> Option<f64> {
         const ROUNDING: f64 = 1e-6;
         let variance = self.positive_variance()?;
-        self.fourth.map(|fourth| fourth / variance / variance).filter(|&fourth| fourth >= 1.0 - ROUNDING)
+        self.central(4).map(|fourth| fourth / variance / variance).filter(|&fourth| fourth >= 1.0 - ROUNDING)
     }
 
     /// Variance of X, a_4, and a_4 - 1 where that is finite and above the rounding of a_4.
@@ -188,8 +170,7 @@ mod tests {
     #[test]
     fn exponential_law_from_raw_moments() {
         let law = ClosedMoments::from_raw(&EXPONENTIAL);
-        let central = [law.variance, law.third, law.fourth, law.fifth, law.sixth, law.seventh, law.eighth];
-        assert_eq!(central, [1.0, 2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0].map(Some));
+        assert_eq!(law.central, [1.0, 2.0, 9.0, 44.0, 265.0, 1854.0, 14833.0].map(Some));
         // (X-1)^2 has mean 1 and variance 8; its third central moment is 265 - 27 + 2 = 240, its fourth 13824.
         assert_relative_eq!(law.squares_skewness().unwrap(), 240.0 / 8f64.powf(1.5), max_relative = 1e-14);
         assert_relative_eq!(
@@ -217,8 +198,8 @@ mod tests {
         let (high, p) = (2.5f64, 0.2);
         let raw: Vec<f64> = (1..=8).map(|k| p * high.powi(k)).collect();
         let (law, other) = (ClosedMoments::two_valued(high, p), ClosedMoments::from_raw(&raw));
-        for (a, b) in [(law.variance, other.variance), (law.fifth, other.fifth), (law.eighth, other.eighth)] {
-            assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = 1e-12);
+        for k in [2, 5, 8] {
+            assert_relative_eq!(law.central(k).unwrap(), other.central(k).unwrap(), max_relative = 1e-12);
         }
         assert_relative_eq!(law.skewness().unwrap(), 0.6 / 0.4, max_relative = 1e-14);
         // A fair coin is always half a unit from its mean: its squares have no shape.
@@ -241,7 +222,7 @@ mod tests {
         assert_eq!(unknown, ClosedMoments::with_mean(1.0));
         assert_eq!(unknown.standard_error(9.0), None);
         // A spread of 1e-9 around 1 drowns in the rounding of E[X^2].
-        assert_eq!(ClosedMoments::from_raw(&[1.0, 1.0 + 4.0 * f64::EPSILON]).variance, None);
+        assert_eq!(ClosedMoments::from_raw(&[1.0, 1.0 + 4.0 * f64::EPSILON]).variance(), None);
         let constant = ClosedMoments::from_central(1.0, &[Some(0.0), Some(0.0), Some(0.0)]);
         assert_eq!(
             (constant.standard_error(9.0), constant.variance_standard_error(9.0)),

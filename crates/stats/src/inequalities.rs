@@ -266,7 +266,7 @@ mod tests {
     fn nothing_known_is_no_evidence() {
         let measured = uniform(2.0, 1000, 1);
         assert!(evidence(&measured, &Reference::exact(1.0), LEVEL).is_none());
-        let closed = ClosedMoments { variance: Some(f64::INFINITY), ..ClosedMoments::with_mean(1.0) };
+        let closed = ClosedMoments::from_central(1.0, &[Some(f64::INFINITY)]);
         let infinite = Reference { moments: Some(closed), ..Reference::exact(1.0) };
         assert!(evidence(&measured, &infinite, LEVEL).is_none());
     }

@@ -24,7 +24,7 @@ pub(crate) fn judge_mean(measured: &Moments, reference: &Reference, mean: f64, a
         return binomial(measured.count(), (n * mean / high).round(), reference, high, alpha);
     }
     let level = 0.5 * alpha;
-    let closed_variance = reference.closed_moments().and_then(|moments| moments.variance);
+    let closed_variance = reference.closed_moments().and_then(|moments| moments.variance());
     if closed_variance.is_some_and(|variance| reference.is_rounding(variance)) {
         return rounding(reference, mean, "the law has no variance", Some(false));
     }

@@ -70,7 +70,7 @@ pub(crate) fn z_test(
     let not_testable = |samples_needed: Option<f64>, why: String| {
         MeanJudgement::not_testable(samples_needed, format!("not testable at N = {n}: {why}"))
     };
-    let closed_variance = closed.and_then(|moments| moments.variance);
+    let closed_variance = closed.and_then(|moments| moments.variance());
     let Some(variance) = closed_variance.or_else(|| measured.sample_variance()) else {
         return Err(not_testable(None, "a single sample of a law with unknown variance".to_owned()));
     };

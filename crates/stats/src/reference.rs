@@ -116,7 +116,7 @@ impl Reference {
         match self.certainty {
             Certainty::Estimated { .. } => None,
             Certainty::Certified => {
-                self.variance_bound.or_else(|| self.closed_moments().and_then(|moments| moments.variance))
+                self.variance_bound.or_else(|| self.closed_moments().and_then(|moments| moments.variance()))
             }
         }
     }
@@ -191,7 +191,7 @@ mod tests {
         let scores = Scores::TwoValued { high: 4.0 };
         let reference = Reference { scores, ..Reference::exact(1.0) };
         assert_eq!(reference.success_probability(), Some(0.25));
-        assert_eq!(reference.closed_moments().unwrap().variance, Some(3.0));
+        assert_eq!(reference.closed_moments().unwrap().variance(), Some(3.0));
         assert_eq!(Reference { mean: 4.000_000_1, ..reference }.success_probability(), Some(1.0));
         assert_eq!(Reference::exact(1.0).closed_moments(), None);
     }

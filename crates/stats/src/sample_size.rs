@@ -24,7 +24,7 @@ pub fn samples_needed(reference: &Reference, alpha: f64, bias: f64) -> Option<f6
     }
     let level = 0.5 * alpha;
     let moments = reference.closed_moments();
-    let variance = moments.and_then(|moments| moments.variance);
+    let variance = moments.and_then(|moments| moments.variance());
     if variance.is_some_and(|variance| reference.is_rounding(variance)) {
         return Some(1.0);
     }

@@ -30,7 +30,7 @@ pub(crate) fn judge_variance(
     let Some(measured_variance) = measured.sample_variance() else {
         return without(None, "not tested (a single sample)");
     };
-    let Some((moments, variance)) = reference.closed_moments().and_then(|m| Some((m, m.variance?))) else {
+    let Some((moments, variance)) = reference.closed_moments().and_then(|m| Some((m, m.variance()?))) else {
         return without(None, "not tested (no closed form)");
     };
     if variance.is_infinite() {

@@ -317,7 +317,7 @@ fn a_variance_with_an_error_rejects_by_its_bound() {
     assert_eq!((rough.sound, rough.mean_test), (Some(false), MeanTest::Inequality), "{}", rough.reason);
     // Bernstein's inequality holds with a bound of the variance, not with less.
     let bounded = |variance: f64, variance_bound: Option<f64>| {
-        let moments = Some(ClosedMoments { variance: Some(variance), ..ClosedMoments::with_mean(0.5) });
+        let moments = Some(ClosedMoments::from_central(0.5, &[Some(variance)]));
         let scores = Scores::Bounded { minimum: 0.0, maximum: 1.0 };
         let reference = Reference { moments, variance_bound, scores, ..Reference::exact(0.5) };
         samples_needed(&reference, ALPHA, 0.05).unwrap()
