@@ -6,12 +6,13 @@ use super::on_specimen::law;
 use super::profiles::{SAMPLED, on_series};
 use crate::checks::{Check, LAWFUL, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::unit_cells;
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_laws::lookups::LookupLaw::Unknown;
-use fairflight_media::{Bounded, Majorant, PiecewiseConstant};
+use fairflight_media::{Bounded, Majorant};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{AdaptiveRatio, TransmittanceEstimator};
+use fairflight_transmittance::AdaptiveRatio;
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind { name: "adaptive_ratio", checks, twins, subjects, spared: &[ONE_MAJORANT] };
@@ -36,8 +37,8 @@ struct KnowsTheLookup {
     floor: f64,
 }
 
-impl<F: Majorant> TransmittanceEstimator<F> for KnowsTheLookup {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Majorant> Wrong<F> for KnowsTheLookup {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         let (mut weight, mut x, mut rate) = (1.0, 0.0, majorant);
         loop {
@@ -51,9 +52,6 @@ impl<F: Majorant> TransmittanceEstimator<F> for KnowsTheLookup {
             rate = null.max(self.floor * majorant);
             weight *= null / rate; // right: by the rate that drew the flight, before it changes
         }
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -70,9 +68,8 @@ fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 97.5 }),
             |run| {
                 let right = AdaptiveRatio::new(0.1).expect(LAWFUL);
-                let steps = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
-                let field = Bounded::new(steps, 1.25).expect(LAWFUL);
-                judged(&field, &KnowsTheLookup { floor: 0.1 }, theory_on(&field, &right, &[]), run)
+                let field = Bounded::new(unit_cells(&[1.0, 0.25]), 1.25).expect(LAWFUL);
+                judged_as(&right, &KnowsTheLookup { floor: 0.1 }, &field, run)
             },
         ),
     ]

@@ -6,12 +6,13 @@ use super::on_specimen::law;
 use super::profiles::{KNOWN, on_series};
 use crate::checks::{Check, LAWFUL, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::unit_cells;
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_laws::lookups::LookupLaw::Poisson;
-use fairflight_media::{Extinction, PiecewiseConstant};
+use fairflight_media::Extinction;
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{GeneralisedPoisson, TransmittanceEstimator};
+use fairflight_transmittance::GeneralisedPoisson;
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind { name: "generalised_poisson", checks, twins, subjects, spared: &[ONE_MAJORANT] };
@@ -45,8 +46,8 @@ struct ForgetsItsRate {
     rate: f64,
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for ForgetsItsRate {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for ForgetsItsRate {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut weight = 1.0; // right: exp(rate − pivot)
         let mut order = source.next_exponential();
         while order < self.rate {
@@ -55,9 +56,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for ForgetsItsRate {
             order += source.next_exponential();
         }
         weight
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -71,10 +69,8 @@ fn twins() -> Vec<Twin> {
         "sigma_t 1, 0.25 (length 1 each), pivot 2, rate 3",
         (50_000, Evident::Mean { z: 60.2 }),
         |run| {
-            let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
             let right = GeneralisedPoisson::new(2.0, 3.0).expect(LAWFUL);
-            let twin = ForgetsItsRate { pivot: 2.0, rate: 3.0 };
-            judged(&field, &twin, theory_on(&field, &right, &[]), run)
+            judged_as(&right, &ForgetsItsRate { pivot: 2.0, rate: 3.0 }, &unit_cells(&[1.0, 0.25]), run)
         },
     )]
 }

@@ -54,16 +54,11 @@ pub(super) fn voxel_ray() -> Celled<Ray<Arc<Voxels<DenseLattice>>>> {
     celled("voxels", ray, cells)
 }
 
-/// Checks that a function gives for each of these. A macro, because an argument is no generic function.
+/// Checks that a function gives for each of these.
 macro_rules! on_all {
-    ($on:ident) => {{
-        use crate::estimators::in_cells::{bump, noise, seed_ray, voxel_ray};
-        let mut checks = $on(&bump());
-        checks.extend($on(&noise()));
-        checks.extend($on(&seed_ray()));
-        checks.extend($on(&voxel_ray()));
-        checks
-    }};
+    ($on:ident) => {
+        $crate::estimators::on_each!($on of in_cells: bump, noise, seed_ray, voxel_ray)
+    };
 }
 pub(super) use on_all;
 

@@ -5,14 +5,15 @@ use super::on_profile::estimator;
 use super::in_cells::{Celled, add, minorant_thickness, on_all};
 use crate::checks::{Check, LAWFUL, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::constant;
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_freeflight::HIGHEST_MOMENT;
 use fairflight_laws::lookups::{self, LookupLaw};
 use fairflight_laws::scores;
-use fairflight_media::{BoundCell, BoundedInCells, Bounded, Constant, Extinction, Majorant, OpticalThickness};
+use fairflight_media::{BoundCell, BoundedInCells, Bounded, Extinction, Majorant, OpticalThickness};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{JitteredRatio, JitteredRatioInCells, TransmittanceEstimator};
+use fairflight_transmittance::{JitteredRatio, JitteredRatioInCells};
 
 pub(super) const KIND: Kind = Kind { name: "jittered_ratio", checks, twins, subjects, spared: &[(20, "its law is one of each stratum, of which there would be a million")] };
 
@@ -89,8 +90,8 @@ fn subjects() -> Vec<Subject> {
 /// Jittered ratio tracking with ε = 1 that continues to the k-th point with the probability ε/(k + 1).
 struct ContinuesTooRarely;
 
-impl<F: Majorant> TransmittanceEstimator<F> for ContinuesTooRarely {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Majorant> Wrong<F> for ContinuesTooRarely {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let strata = (field.majorant() * field.length()).ceil();
         let width = field.length() / strata;
         let mut estimate = 1.0;
@@ -110,9 +111,6 @@ impl<F: Majorant> TransmittanceEstimator<F> for ContinuesTooRarely {
         }
         estimate
     }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
 }
 
 fn twins() -> Vec<Twin> {
@@ -127,9 +125,8 @@ fn twins() -> Vec<Twin> {
             (20_000, Evident::Mean { z: 73.3 }),
             |run| {
                 // Four strata of the optical thickness 1 in the majorant and 1/2 in the field.
-                let field = Bounded::new(Constant::new(0.5, 4.0).expect(LAWFUL), 1.0).expect(LAWFUL);
-                let right = theory_on(field, &JitteredRatio::new(1.0).expect(LAWFUL), &[]);
-                judged(&field, &ContinuesTooRarely, right, run)
+                let field = Bounded::new(constant(0.5, 4.0), 1.0).expect(LAWFUL);
+                judged_as(&JitteredRatio::new(1.0).expect(LAWFUL), &ContinuesTooRarely, &field, run)
             },
         ),
     ]

@@ -6,9 +6,10 @@ use super::add;
 use super::woodcock::ENDING;
 use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::unit_cells;
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
-use fairflight_media::{Bounded, Extinction, Majorant, PiecewiseConstant};
+use fairflight_media::{Bounded, Extinction, Majorant};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{LineIntegral, TransmittanceEstimator, Woodcock};
 use std::sync::Arc;
@@ -39,28 +40,24 @@ fn subjects() -> Vec<Subject> {
     ]
 }
 
-/// Algorithm 2 with the optical distance of the first collision as a function of u in \[0, 1) and p_V.
-struct WrongFirstStep {
-    splits: u32,
-    majorant: f64,
-    first: fn(f64, f64) -> f64,
-}
+/// Flights of each estimate of a twin.
+const SPLITS: u32 = 4;
 
-impl<F: Extinction> TransmittanceEstimator<F> for WrongFirstStep {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let field = Bounded::new(field, self.majorant).expect(LAWFUL);
+/// Algorithm 2 in a majorant of 1, with the optical distance of the first collision as a function of u in \[0, 1) and p_V.
+struct WrongFirstStep(fn(f64, f64) -> f64);
+
+impl<F: Extinction> Wrong<F> for WrongFirstStep {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+        let field = Bounded::new(field, 1.0).expect(LAWFUL);
         let p_volume = -(-field.majorant() * field.length()).exp_m1();
-        let n = f64::from(self.splits);
+        let n = f64::from(SPLITS);
         let shift = source.next_uniform();
         let mut escaped = 0.0;
-        for k in 0..self.splits {
-            let depth = (self.first)((f64::from(k) + shift) / n, p_volume);
+        for k in 0..SPLITS {
+            let depth = (self.0)((f64::from(k) + shift) / n, p_volume);
             escaped += flight(&field, depth, source);
         }
         1.0 - p_volume + p_volume * escaped / n
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -101,10 +98,8 @@ impl<F: Majorant> Majorant for Behind<'_, F> {
 fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> f64) -> Twin {
     let profile = "sigma_t 1, 0.1 (length 1 each), majorant 1, 4 splits";
     Twin::new("line integral", id, mistake, profile, (50_000, Evident::Mean { z }), move |run| {
-        let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.1]).expect(LAWFUL);
-        let right = LineIntegral::new(4).expect(LAWFUL);
-        let theory = theory_on(&field, &right, &[]);
-        judged(&field, &WrongFirstStep { splits: 4, majorant: 1.0, first }, theory, run)
+        let right = LineIntegral::new(SPLITS).expect(LAWFUL);
+        judged_as(&right, &WrongFirstStep(first), &unit_cells(&[1.0, 0.1]), run)
     })
 }
 

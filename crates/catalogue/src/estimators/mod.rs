@@ -11,6 +11,17 @@ use crate::hard_cases::Subject;
 use crate::twins::Twin;
 pub(crate) use on_specimen::add;
 
+/// Checks that a function gives for each of these specimens. A macro, because an argument is no generic function.
+macro_rules! on_each {
+    ($on:ident of $module:ident: $($specimen:ident),+) => {{
+        use $crate::estimators::$module::{$($specimen),+};
+        let mut checks = Vec::new();
+        $(checks.extend($on(&$specimen()));)+
+        checks
+    }};
+}
+pub(crate) use on_each;
+
 /// A kind of estimators.
 pub(crate) struct Kind {
     /// Its name in specs.

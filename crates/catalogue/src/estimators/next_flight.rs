@@ -6,14 +6,13 @@ use super::on_specimen::law;
 use super::profiles::{SAMPLED, SKEWED, on_series};
 use crate::checks::{Check, LAWFUL, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::unit_cells;
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_laws::lookups::LookupLaw::{MeanOnly, Poisson};
-use fairflight_media::{Bounded, Majorant, PiecewiseConstant};
+use fairflight_media::{Bounded, Majorant};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{
-    Bidirectional, NextFlight, NextFlightVersion, TransmittanceEstimator, Unidirectional,
-};
+use fairflight_transmittance::{Bidirectional, NextFlight, NextFlightVersion, Unidirectional};
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind { name: "next_flight", checks, twins, subjects, spared: &[ONE_MAJORANT] };
@@ -53,8 +52,8 @@ fn subjects() -> Vec<Subject> {
 /// Next flight after ratio tracking that adds from its first collision on.
 struct WithoutTheStart;
 
-impl<F: Majorant> TransmittanceEstimator<F> for WithoutTheStart {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Majorant> Wrong<F> for WithoutTheStart {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (majorant, length) = (field.majorant(), field.length());
         let (mut sum, mut weight, mut s) = (0.0, 1.0, 0.0); // right: sum = exp(−majorant · length)
         loop {
@@ -65,9 +64,6 @@ impl<F: Majorant> TransmittanceEstimator<F> for WithoutTheStart {
             weight *= 1.0 - field.sigma_t(s) / majorant;
             sum += weight * (-majorant * (length - s)).exp();
         }
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -82,9 +78,8 @@ fn twins() -> Vec<Twin> {
             (400_000, Evident::Mean { z: 179.0 }),
             |run| {
                 let right = NextFlight::new(NextFlightVersion::Ratio);
-                let steps = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
-                let field = Bounded::new(steps, 1.25).expect(LAWFUL);
-                judged(&field, &WithoutTheStart, theory_on(&field, &right, &[]), run)
+                let field = Bounded::new(unit_cells(&[1.0, 0.25]), 1.25).expect(LAWFUL);
+                judged_as(&right, &WithoutTheStart, &field, run)
             },
         ),
     ]

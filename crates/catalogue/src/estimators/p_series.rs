@@ -6,12 +6,13 @@ use super::on_specimen::law;
 use super::profiles::{KNOWN, SAMPLED, SKEWED, on_series};
 use crate::checks::{Check, LAWFUL, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::unit_cells;
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_laws::lookups::LookupLaw::{MeanOnly, Poisson, Unknown};
-use fairflight_media::{Extinction, PiecewiseConstant};
+use fairflight_media::Extinction;
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{PSeries, PSeriesVersion, TransmittanceEstimator};
+use fairflight_transmittance::{PSeries, PSeriesVersion};
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind { name: "p_series", checks, twins, subjects, spared: &[ONE_MAJORANT] };
@@ -55,8 +56,8 @@ struct CappedOrder {
     pivot: f64,
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for CappedOrder {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for CappedOrder {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut term = (-self.pivot).exp();
         let mut sum = term;
         for k in 1..=4 {
@@ -66,9 +67,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for CappedOrder {
             sum += term;
         }
         sum
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -84,8 +82,7 @@ fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 86.0 }),
             |run| {
                 let right = PSeries::new(PSeriesVersion::Cmf, 4.0).expect(LAWFUL);
-                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
-                judged(&field, &CappedOrder { pivot: 4.0 }, theory_on(&field, &right, &[]), run)
+                judged_as(&right, &CappedOrder { pivot: 4.0 }, &unit_cells(&[1.0, 0.25]), run)
             },
         ),
     ]

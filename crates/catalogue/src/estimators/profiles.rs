@@ -56,16 +56,11 @@ pub(super) fn seed_ray() -> Arc<Specimen<Ray<Arc<AnalyticCosine>>>> {
 }
 
 /// Checks of next flight, power series and their relatives: those that a function gives for a bump, noise, thin steps of both signs and a
-/// chord of eq. 21. A macro, because an argument is no generic function.
+/// chord of eq. 21.
 macro_rules! on_series {
-    ($on:ident) => {{
-        use crate::estimators::profiles::{bump, chord, noise, thin_signed};
-        let mut checks = $on(&bump());
-        checks.extend($on(&noise()));
-        checks.extend($on(&thin_signed()));
-        checks.extend($on(&chord()));
-        checks
-    }};
+    ($on:ident) => {
+        $crate::estimators::on_each!($on of profiles: bump, noise, thin_signed, chord)
+    };
 }
 pub(super) use on_series;
 

@@ -5,9 +5,10 @@ use super::on_profile::estimator;
 use super::add;
 use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField, analytic_cosine, voxels};
 use crate::hard_cases::Subject;
+use crate::profiles::constant;
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::Observed;
-use fairflight_media::{Constant, OpticalThickness, PiecewiseConstant, PiecewiseLinear, Tolerance};
+use fairflight_media::{OpticalThickness, PiecewiseConstant, PiecewiseLinear, Tolerance};
 use fairflight_stats::Scores;
 use fairflight_transmittance::{Regular, TransmittanceEstimator};
 use glam::{DVec3, dvec3};
@@ -21,7 +22,7 @@ fn checks() -> Vec<Check> {
     let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
     let oblique = analytic_cosine(dvec3(-9.0, 3.0, -4.0), dvec3(0.55, -0.2, 0.81));
     vec![
-        on("constant", Constant::new(0.7, 3.0).expect(LAWFUL)),
+        on("constant", constant(0.7, 3.0)),
         on("piecewise_constant", steps),
         on("piecewise_constant_negative", signed),
         on("piecewise_linear", tent),

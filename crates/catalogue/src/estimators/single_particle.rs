@@ -6,7 +6,8 @@ use super::add;
 use super::woodcock::ENDING;
 use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
 use crate::hard_cases::{Profile, Subject};
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::constant;
+use crate::twins::trial::{Wrong, judged, judged_as, theory_on};
 use crate::twins::{Evident, Rejection, Twin};
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
 use fairflight_laws::{CheckResult, Run};
@@ -89,8 +90,8 @@ struct StopsBelowZero {
     sampling: Constant,
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for StopsBelowZero {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for StopsBelowZero {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         use fairflight_media::InvertOpticalThickness;
         let mut weight = SignedProduct::ONE;
         let mut s = 0.0;
@@ -107,9 +108,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for StopsBelowZero {
         }
         weight.times_exp(0.0)
     }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
 }
 
 fn single(version: Version, albedo: f64) -> SingleParticle {
@@ -118,8 +116,8 @@ fn single(version: Version, albedo: f64) -> SingleParticle {
 
 /// The terminating version judged as the non-terminating one, which admits every r.
 fn outside_the_terminating_domain(sigma_t: f64, length: f64, sampling: f64, run: Run) -> Rejection {
-    let field = Constant::new(sigma_t, length).expect(LAWFUL);
-    let sampling = Constant::new(sampling, length).expect(LAWFUL);
+    let field = constant(sigma_t, length);
+    let sampling = constant(sampling, length);
     let of = |version| Tracking::new(single(version, 0.0), Vacuum::new(length), sampling);
     let theory = theory_on(field, &of(Version::NonTerminating), &[]);
     let refused = !TransmittanceEstimator::admits(&of(Version::Terminating), &field, 0.0, sigma_t);
@@ -158,11 +156,11 @@ fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 28.7 }),
             |run| {
                 // As in hard case 3.
-                let field = Constant::new(1.0, 2.0).expect(LAWFUL);
-                let sampling = Constant::new(0.8, 2.0).expect(LAWFUL);
+                let field = constant(1.0, 2.0);
+                let sampling = constant(0.8, 2.0);
                 let model = single(Version::NonTerminating, 0.5);
-                let theory = theory_on(field, &Tracking::new(model, Vacuum::new(2.0), sampling), &[]);
-                judged(&field, &StopsBelowZero { model, sampling }, theory, run)
+                let right = Tracking::new(model, Vacuum::new(2.0), sampling);
+                judged_as(&right, &StopsBelowZero { model, sampling }, &field, run)
             },
         ),
     ]

@@ -6,13 +6,13 @@ use super::add;
 use super::profiles::{rough_cells, seed_ray, signed, tent};
 use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged, theory_on};
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_media::{Extinction, PiecewiseLinear};
 use fairflight_sources::UniformSource;
 use fairflight_stats::Scores;
-use fairflight_transmittance::{Comb, CombShape, Telescoping, TransmittanceEstimator};
+use fairflight_transmittance::{Comb, CombShape, Telescoping};
 use std::sync::Arc;
 
 pub(super) const KIND: Kind = Kind { name: "telescoping", checks, twins, subjects, spared: &[] };
@@ -57,8 +57,8 @@ struct EvenHalfOnly {
     level_ratio: f64,
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for EvenHalfOnly {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for EvenHalfOnly {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (mut level, mut probability) = (0, self.level_ratio);
         while source.next_uniform() >= self.level_ratio {
             level += 1;
@@ -77,9 +77,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for EvenHalfOnly {
         let even = x.iter().step_by(2).sum::<f64>() / f64::from(combs / 2);
         base + ((-all).exp() - (-even).exp()) / probability // right: the mean of both halves
     }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
 }
 
 fn twins() -> Vec<Twin> {
@@ -94,8 +91,7 @@ fn twins() -> Vec<Twin> {
                 let level_ratio = 0.65;
                 let tent = PiecewiseLinear::new(vec![0.0, 1.0, 3.0], vec![0.1, 1.5, 0.2]).expect(LAWFUL);
                 let right = Telescoping::new(2, level_ratio, CombShape::EndpointMatched).expect(LAWFUL);
-                let theory = theory_on(&tent, &right, &[]);
-                judged(&tent, &EvenHalfOnly { comb: right.comb(), level_ratio }, theory, run)
+                judged_as(&right, &EvenHalfOnly { comb: right.comb(), level_ratio }, &tent, run)
             },
         ),
     ]

@@ -5,11 +5,12 @@ use super::on_profile::{ONE_MAJORANT, estimator, one_lookup_a_mean_free_path};
 use super::add;
 use crate::checks::{Check, LAWFUL, Law, Specimen, SpecimenField};
 use crate::hard_cases::Subject;
-use crate::twins::trial::{judged_with_scores, theory_on};
+use crate::profiles::{constant, unit_cells};
+use crate::twins::trial::{Pretending, Wrong, judged_with_scores, theory_on};
 use crate::twins::{Evident, Rejection, Twin};
 use fairflight_laws::scores;
 use fairflight_laws::transmittance::Admitted;
-use fairflight_media::{Bounded, Constant, Extinction, PiecewiseConstant, Watched};
+use fairflight_media::{Bounded, Extinction, Watched};
 use fairflight_sources::{Scripted, UniformSource};
 use fairflight_transmittance::{TransmittanceEstimator, Woodcock};
 use std::sync::Arc;
@@ -34,13 +35,10 @@ fn subjects() -> Vec<Subject> {
 /// The right flight, in a majorant that is none.
 struct TooLow(f64);
 
-impl<F: Extinction> TransmittanceEstimator<F> for TooLow {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for TooLow {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let claimed = Bounded::new(field, self.0).expect(LAWFUL); // right: a value that sigma_t nowhere exceeds
         Woodcock.estimate(&claimed, source)
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -59,9 +57,10 @@ fn twins() -> Vec<Twin> {
             "sigma_t 0.5, 1.5 (length 1 each), majorant 1.1",
             (50_000, Evident::Mean { z: 43.5 }),
             |run| {
-                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.5, 1.5]).expect(LAWFUL);
+                let field = unit_cells(&[0.5, 1.5]);
                 let theory = theory_on(&field, &Woodcock, &[]);
-                let statistical = judged_with_scores(&field, &TooLow(1.1), (theory, scores::woodcock), run);
+                let statistical =
+                    judged_with_scores(&field, &Pretending(&TooLow(1.1)), (theory, scores::woodcock), run);
                 // A watched run does not even need statistics: a first step of 1.5/1.1 ends where sigma_t is 1.5.
                 let claimed = Bounded::new(&field, 1.1).expect(LAWFUL);
                 let admitted = Admitted { field: claimed, estimator: Woodcock };
@@ -79,7 +78,7 @@ fn twins() -> Vec<Twin> {
             "sigma_t 0, majorant 1, variate 0",
             (0, Evident::Exactly),
             |_| {
-                let empty = Bounded::new(Constant::new(0.0, 1.0).expect(LAWFUL), 1.0).expect(LAWFUL);
+                let empty = Bounded::new(constant(0.0, 1.0), 1.0).expect(LAWFUL);
                 // A first step of ln 2 lies on the profile; the variate 0 decides about the collision; then out.
                 let ours = Woodcock.estimate(&empty, &mut Scripted::new([0.5, 0.0, 0.5]));
                 let rejected = ours == 1.0 && collides_as_printed(0.0, 1.0, 0.0);

@@ -2,9 +2,10 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::constant;
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
 use fairflight_laws::collision;
-use fairflight_media::{Constant, Counted, RayQuadrature, Tolerance, Vacuum};
+use fairflight_media::{Counted, RayQuadrature, Tolerance, Vacuum};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{ClosedForm, Tracking, TransmittanceEstimator};
 
@@ -39,8 +40,8 @@ fn rounded_null(delta: f64) -> Outcome {
 fn variance_at(r: f64, a: f64) -> Outcome {
     // An optical thickness such that the variance is of order 1.
     let tau = 1.0 / r.max(1.0);
-    let field = Constant::new(tau, 1.0).expect(LAWFUL);
-    let sampling = Constant::new(tau / r, 1.0).expect(LAWFUL);
+    let field = constant(tau, 1.0);
+    let sampling = constant(tau / r, 1.0);
     // The variance introduction densities over σ_samp.
     let eq19 = if r <= 1.0 { r } else { r * (3.0 - 2.0 / r) };
     let eq20 = r.abs() * (r.abs() + a * (1.0 - r).abs());
@@ -87,10 +88,10 @@ fn a_million_collisions(weight: f64) -> Outcome {
     // σ_t − σ_main = r · rate
     let r = 1.0 - weight;
     let main = -r * RATE;
-    let field = Counted::new(Constant::new(0.0, 1.0).expect(LAWFUL));
-    let control = Constant::new(main, 1.0).expect(LAWFUL);
+    let field = Counted::new(constant(0.0, 1.0));
+    let control = constant(main, 1.0);
     let model = DoubleParticle { albedo: Albedo::default() };
-    let estimator = Tracking::new(model, control, Constant::new(RATE, 1.0).expect(LAWFUL));
+    let estimator = Tracking::new(model, control, constant(RATE, 1.0));
     let ours = estimator.estimate(&field, &mut EvenlySpaced);
     let n = field.lookups() as f64;
     let exact = (n * (-r).ln_1p() - main).exp();
@@ -144,9 +145,9 @@ pub(super) fn cases() -> Vec<HardCase> {
                 samples,
                 move |run| {
                     let model = SingleParticle { version: Version::NonTerminating, albedo: albedo(0.5) };
-                    let sampling = Constant::new(tau / r, 1.0).expect(LAWFUL);
+                    let sampling = constant(tau / r, 1.0);
                     let estimator = Tracking::new(model, Vacuum::new(1.0), sampling);
-                    judge_walk(&Constant::new(tau, 1.0).expect(LAWFUL), &estimator, run)
+                    judge_walk(&constant(tau, 1.0), &estimator, run)
                 },
             )
             .about(["single_particle"]),

@@ -2,8 +2,9 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::constant;
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Bounds, Constant, Homogeneous, OpticalThickness, PiecewiseConstant, Ray, Vacuum};
+use fairflight_media::{Bounds, Homogeneous, OpticalThickness, PiecewiseConstant, Ray, Vacuum};
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{Tracking, TransmittanceEstimator};
 use glam::{DVec3, dvec3};
@@ -21,7 +22,7 @@ fn in_space(bounds: Bounds, direction: DVec3, tolerance: f64) -> Outcome {
     };
     let ray = Ray::new(Homogeneous::new(1.0 / SIZE).expect(LAWFUL), &clip);
     let tau = ray.optical_thickness(0.0, clip.length);
-    let control = Constant::new(1.0 / SIZE, clip.length).expect(LAWFUL);
+    let control = constant(1.0 / SIZE, clip.length);
     let model = DoubleParticle { albedo: Albedo::default() };
     let walk = Tracking::new(model, control, control).estimate(&ray, &mut Seeded::new(11));
     let outcome = Outcome::value(walk, (-1.0_f64).exp(), tolerance);

@@ -1,19 +1,20 @@
 //! Row 21: variances that no sample shows.
 
-use super::{HardCase, LAWFUL, Outcome};
+use super::{HardCase, Outcome};
+use crate::profiles::constant;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::check;
 use fairflight_laws::{Expectation, Run, Truth};
-use fairflight_media::{Constant, RayQuadrature, Tolerance, Vacuum};
+use fairflight_media::{RayQuadrature, Tolerance, Vacuum};
 use fairflight_stats::Scores;
 use fairflight_transmittance::{ClosedForm, Tracking};
 
 /// σ_t = 1 on a length of 1 with σ_samp = 1/J: ∫ σ_diff²/σ_samp = J.
 fn tail(j: f64, run: Run) -> Outcome {
-    let field = Constant::new(1.0, 1.0).expect(LAWFUL);
+    let field = constant(1.0, 1.0);
     let model = DoubleParticle { albedo: Albedo::default() };
-    let sampling = Constant::new(1.0 / j, 1.0).expect(LAWFUL);
+    let sampling = constant(1.0 / j, 1.0);
     let estimator = Tracking::new(model, Vacuum::new(1.0), sampling);
     let theory = estimator.theory(&mut RayQuadrature::new(&field, &[]), 1.0, Tolerance::TIGHT);
     // eq. 16: ln(exp(J) − 1)

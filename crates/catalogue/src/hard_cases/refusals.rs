@@ -1,11 +1,12 @@
 //! Row 15: a medium that breaks its promises is refused, with the point.
 
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::constant;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::transmittance::{Observed, check};
 use fairflight_laws::{Expectation, Refusal, Run, Truth};
-use fairflight_media::{Constant, Extinction, Majorant, Vacuum};
+use fairflight_media::{Extinction, Majorant, Vacuum};
 use fairflight_stats::Scores;
 use fairflight_transmittance::{LineIntegral, Theory, Tracking, TransmittanceEstimator, Woodcock};
 
@@ -73,7 +74,7 @@ pub(super) fn cases() -> Vec<HardCase> {
         if !value.is_finite() {
             add("double particle", "double_particle", |field| {
                 let model = DoubleParticle { albedo: Albedo::default() };
-                let sampling = Constant::new(1.0, 2.0).expect(LAWFUL);
+                let sampling = constant(1.0, 2.0);
                 tried(field, &Tracking::new(model, Vacuum::new(2.0), sampling))
             });
         }

@@ -1,9 +1,10 @@
 //! Rows 3, 4 and 5: a sampling extinction below the extinction, and negative extinction.
 
 use super::judging::judge_walk;
-use super::{HardCase, LAWFUL, Outcome};
-use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
-use fairflight_media::{Constant, PiecewiseConstant, Vacuum};
+use super::{HardCase, Outcome};
+use crate::profiles::{constant, unit_cells};
+use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
+use fairflight_media::{Constant, Vacuum};
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{Tracking, TransmittanceEstimator};
 
@@ -11,8 +12,9 @@ fn double_particle() -> DoubleParticle {
     DoubleParticle { albedo: Albedo::default() }
 }
 
-fn constant(sigma: f64, length: f64) -> Constant {
-    Constant::new(sigma, length).expect(LAWFUL)
+/// A walk with a constant sampling extinction over a length of 2.
+fn walk<M: CollisionModel>(model: M, sampling: f64) -> Tracking<M, Vacuum, Constant> {
+    Tracking::new(model, Vacuum::new(2.0), constant(sampling, 2.0))
 }
 
 pub(super) fn cases() -> Vec<HardCase> {
@@ -23,10 +25,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "double particle",
             "0.1353 = exp(-2)",
             200_000,
-            |run| {
-                let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(0.5, 2.0));
-                judge_walk(&constant(1.0, 2.0), &estimator, run)
-            },
+            |run| judge_walk(&constant(1.0, 2.0), &walk(double_particle(), 0.5), run),
         )
         .about(["double_particle"]),
         HardCase::statistical(
@@ -37,8 +36,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             200_000,
             |run| {
                 let model = SingleParticle { version: Version::Adaptive, albedo: Albedo::default() };
-                let estimator = Tracking::new(model, Vacuum::new(2.0), constant(0.5, 2.0));
-                judge_walk(&constant(1.0, 2.0), &estimator, run)
+                judge_walk(&constant(1.0, 2.0), &walk(model, 0.5), run)
             },
         )
         .about(["single_particle"]),
@@ -48,11 +46,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "double particle, sigma_samp 2",
             "0.6065 = exp(-0.5)",
             100_000,
-            |run| {
-                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, -0.5]).expect(LAWFUL);
-                let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(2.0, 2.0));
-                judge_walk(&field, &estimator, run)
-            },
+            |run| judge_walk(&unit_cells(&[1.0, -0.5]), &walk(double_particle(), 2.0), run),
         )
         .about(["double_particle"]),
         HardCase::statistical(
@@ -61,10 +55,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "double particle, sigma_samp 2",
             "2.718 = exp(1)",
             100_000,
-            |run| {
-                let estimator = Tracking::new(double_particle(), Vacuum::new(2.0), constant(2.0, 2.0));
-                judge_walk(&constant(-0.5, 2.0), &estimator, run)
-            },
+            |run| judge_walk(&constant(-0.5, 2.0), &walk(double_particle(), 2.0), run),
         )
         .about(["double_particle"]),
         HardCase::deterministic(

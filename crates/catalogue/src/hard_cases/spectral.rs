@@ -1,6 +1,7 @@
 //! Rows 6 and 22: a wavelength that nothing attenuates, and one distance for two wavelengths.
 
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::constant;
 use fairflight_freeflight::ClosedForm;
 use fairflight_freeflight::spectral::{
     AverageScheme, HeroWavelength, MaxScheme, SeparateSolve, SharedDistance, SpectralFlight,
@@ -18,10 +19,6 @@ type Clear = Scaled<Constant, 3>;
 
 fn one_is_clear(length: f64) -> Clear {
     Scaled::new(constant(1.0, length), ONE_IS_CLEAR).expect(LAWFUL)
-}
-
-fn constant(sigma_t: f64, length: f64) -> Constant {
-    Constant::new(sigma_t, length).expect(LAWFUL)
 }
 
 /// The weights of a path in a rod between walls of radiance 1, albedo 1, that flies back at each collision: radiance 1 for

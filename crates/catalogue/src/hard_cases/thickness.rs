@@ -2,8 +2,9 @@
 
 use super::judging::judge_walk;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::constant;
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Constant, PiecewiseConstant};
+use fairflight_media::PiecewiseConstant;
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{LineIntegral, Tracking, TransmittanceEstimator};
 
@@ -13,8 +14,8 @@ fn double_particle() -> DoubleParticle {
 
 /// Two set-ups without variance: the field as its own control, and a line integral in a majorant that is the field.
 fn thickness(tau: f64) -> Outcome {
-    let field = Constant::new(tau, 1.0).expect(LAWFUL);
-    let residual = Tracking::new(double_particle(), field, Constant::new(3.0, 1.0).expect(LAWFUL));
+    let field = constant(tau, 1.0);
+    let residual = Tracking::new(double_particle(), field, constant(3.0, 1.0));
     let walk = residual.estimate(&field, &mut Seeded::new(8));
     let line = LineIntegral::new(4).expect(LAWFUL).estimate(&field, &mut Seeded::new(8));
     let exact = (-tau).exp();
@@ -53,7 +54,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             "1e-10: the edges are rounded",
             || {
                 let field = spike();
-                let sampling = Constant::new(10.0, 1.0).expect(LAWFUL);
+                let sampling = constant(10.0, 1.0);
                 let walk = Tracking::new(double_particle(), field.clone(), sampling);
                 Outcome::value(walk.estimate(&field, &mut Seeded::new(9)), (-1.0_f64).exp(), 1e-10)
             },
@@ -69,7 +70,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             100_000,
             |run| {
                 let rate = PiecewiseConstant::new(vec![0.0, 0.5, 0.500_001, 1.0], vec![0.0, 4e6, 0.0]);
-                let none = Constant::new(0.0, 1.0).expect(LAWFUL);
+                let none = constant(0.0, 1.0);
                 judge_walk(&spike(), &Tracking::new(double_particle(), none, rate.expect(LAWFUL)), run)
             },
         )

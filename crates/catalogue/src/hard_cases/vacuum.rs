@@ -1,8 +1,9 @@
 //! Rows 1, 2 and 12: nothing on the ray, nothing of the ray, next to nothing of the ray.
 
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::constant;
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Bounded, Bounds, Clip, Constant, Homogeneous, OpticalThickness, Ray, Vacuum};
+use fairflight_media::{Bounded, Bounds, Clip, Homogeneous, OpticalThickness, Ray, Vacuum};
 use fairflight_sources::{LARGEST_VARIATE, Scripted, Seeded};
 use fairflight_transmittance::{LineIntegral, Tracking, TransmittanceEstimator, Woodcock};
 use glam::{DVec3, dvec3};
@@ -13,7 +14,7 @@ fn common(values: &[f64], exact: f64) -> f64 {
 }
 
 fn empty_ray() -> Outcome {
-    let field = Constant::new(0.0, 1e300).expect(LAWFUL);
+    let field = constant(0.0, 1e300);
     let bounded = Bounded::new(field, 0.0).expect(LAWFUL);
     let tracking = Tracking::new(DoubleParticle { albedo: Albedo::default() }, Vacuum::new(1e300), field);
     let line = LineIntegral::new(4).expect(LAWFUL);
@@ -34,10 +35,10 @@ fn empty_ray() -> Outcome {
 /// The local majorant belongs to a dense region that this ray passes by.
 fn beside_a_dense_region(majorant_thickness: f64) -> Outcome {
     const LENGTH: f64 = 2.0;
-    let field = Constant::new(0.0, LENGTH).expect(LAWFUL);
+    let field = constant(0.0, LENGTH);
     let majorant = majorant_thickness / LENGTH;
     let bounded = Bounded::new(field, majorant).expect(LAWFUL);
-    let sampling = Constant::new(majorant, LENGTH).expect(LAWFUL);
+    let sampling = constant(majorant, LENGTH);
     let tracking = Tracking::new(DoubleParticle { albedo: Albedo::default() }, Vacuum::new(LENGTH), sampling);
     let line = LineIntegral::new(4).expect(LAWFUL);
     let mut source = Seeded::new(2);
@@ -68,7 +69,7 @@ fn clipped(origin: DVec3, direction: DVec3, length: Option<f64>, exact: f64, tol
     let ray = Ray::new(Homogeneous::new(0.5).expect(LAWFUL), &clip);
     let tau = ray.optical_thickness(0.0, clip.length);
     // The walk with the field as its control has no variance.
-    let control = Constant::new(0.5, clip.length).expect(LAWFUL);
+    let control = constant(0.5, clip.length);
     let tracking = Tracking::new(DoubleParticle { albedo: Albedo::default() }, control, control);
     let walked = tracking.estimate(&ray, &mut Scripted::new([0.2, LARGEST_VARIATE]));
     let closed = Outcome::value((-tau).exp(), exact, tolerance);

@@ -2,11 +2,11 @@
 
 use super::by_kind::Profile;
 use super::{HardCase, LAWFUL, Outcome};
+use crate::profiles::{constant, unit_cells};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::DenseLattice;
 use fairflight_media::{
-    BoundCell, BoundGrid, BoundedInCells, Bounds, Constant, Extinction, InCells, OpticalThickness,
-    PiecewiseConstant, Ray, Voxels,
+    BoundCell, BoundGrid, BoundedInCells, Bounds, Extinction, InCells, OpticalThickness, Ray, Voxels,
 };
 use fairflight_sources::{Scripted, Seeded};
 use fairflight_transmittance::{
@@ -33,7 +33,7 @@ fn through(origin: DVec3, direction: DVec3) -> Outcome {
     let closed = (-ray.optical_thickness(0.0, clip.length)).exp();
     // Two explorers see all of an affine field: the walk has no variance but rounding.
     let control = Explorers::through(&ray, 2).expect(LAWFUL);
-    let sampling = Constant::new(1.0, clip.length).expect(LAWFUL);
+    let sampling = constant(1.0, clip.length);
     let walk = Tracking::new(DoubleParticle { albedo: Albedo::default() }, control, sampling)
         .estimate(&ray, &mut Seeded::new(10));
     let outcome = Outcome::value(walk, exact, 1e-13);
@@ -83,8 +83,8 @@ fn in_boxes(origin: DVec3, direction: DVec3) -> Outcome {
 
 /// An interaction exactly on a discontinuity sees one side or the other, never neither.
 fn discontinuity() -> Outcome {
-    let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.25, 0.75]).expect(LAWFUL);
-    let sampling = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![0.5, 1.0]).expect(LAWFUL);
+    let field = unit_cells(&[0.25, 0.75]);
+    let sampling = unit_cells(&[0.5, 1.0]);
     let model = DoubleParticle { albedo: Albedo::default() };
     let walk = Tracking::new(model, field.clone(), sampling);
     // 1 − exp(−0.5): the first collision is where the cells meet, up to rounding; the next would be beyond.

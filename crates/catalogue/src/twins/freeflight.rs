@@ -1,7 +1,8 @@
 //! Mistakes of free-flight samplers.
 
-use super::trial::LAWFUL;
+use super::trial::{Pretending, Wrong};
 use super::{Evident, Rejection, Twin};
+use crate::profiles::{constant, unit_cells};
 use fairflight_collision::{Outcome, SingleOutcome, SingleParticle, Version};
 use fairflight_freeflight::{ClosedForm, Flight, FreeFlight, Tracking, Woodcock};
 use fairflight_laws::Run;
@@ -14,8 +15,8 @@ use fairflight_sources::{Scripted, UniformSource};
 /// Woodcock tracking through majorant cells that divides by the majorant where the flight began.
 struct PreviousCell(PiecewiseConstant);
 
-impl<F: Extinction> FreeFlight<F> for PreviousCell {
-    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
+impl<F: Extinction> Wrong<F, Flight> for PreviousCell {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let mut s = 0.0;
         while let Some(next) = self.0.invert(s, source.next_exponential()) {
             let majorant = self.0.sigma_t(s); // right: after s = next
@@ -26,16 +27,13 @@ impl<F: Extinction> FreeFlight<F> for PreviousCell {
         }
         Flight::Escaped { weight: 1.0 }
     }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
 }
 
 /// raab-2008 algorithm 1 accepts a collision at `ratio ≥ rand()`.
 struct CollidesAsPrinted(Constant);
 
-impl<F: Extinction> FreeFlight<F> for CollidesAsPrinted {
-    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
+impl<F: Extinction> Wrong<F, Flight> for CollidesAsPrinted {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let mut s = 0.0;
         while let Some(next) = self.0.invert(s, source.next_exponential()) {
             s = next;
@@ -45,9 +43,6 @@ impl<F: Extinction> FreeFlight<F> for CollidesAsPrinted {
             }
         }
         Flight::Escaped { weight: 1.0 }
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -59,8 +54,8 @@ struct WithoutEnergy {
     taken_for: [fn(f64) -> f64; 2],
 }
 
-impl<F: Extinction> FreeFlight<F> for WithoutEnergy {
-    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
+impl<F: Extinction> Wrong<F, Flight> for WithoutEnergy {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let [scattered, transmitted] = self.taken_for;
         let (mut weight, mut s) = (1.0, 0.0);
         while let Some(next) = self.sampling.invert(s, source.next_exponential()) {
@@ -75,16 +70,13 @@ impl<F: Extinction> FreeFlight<F> for WithoutEnergy {
         }
         Flight::Escaped { weight }
     }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
 }
 
 /// Judges `twin` by the law and the closed forms of its sibling `right`; the z is that of the score `shows`.
 pub(super) fn judged<
     F: Extinction + Breakpoints,
     E: for<'f> ClosedForm<&'f F>,
-    T: for<'f> FreeFlight<&'f F>,
+    T: for<'f> Wrong<&'f F, Flight>,
 >(
     field: &F,
     (right, also): (&E, &[f64]),
@@ -95,11 +87,11 @@ pub(super) fn judged<
 ) -> Rejection {
     let mut quadrature = RayQuadrature::new(field, also);
     let expected = FlightExpectation::new(&mut quadrature, right, weights, Tolerance::TIGHT);
-    Rejection::of_flights(check_flights(field, twin, &expected, run), shows)
+    Rejection::of_flights(check_flights(field, Pretending(twin), &expected, run), shows)
 }
 
 fn without_energy(taken_for: [fn(f64) -> f64; 2], shows: &str, run: Run) -> Rejection {
-    let (field, sampling) = (Constant::new(1.0, 1.0).expect(LAWFUL), Constant::new(0.8, 1.0).expect(LAWFUL));
+    let (field, sampling) = (constant(1.0, 1.0), constant(0.8, 1.0));
     let right = Tracking::new(Version::NonTerminating, sampling);
     let twin = WithoutEnergy { model: *right.model(), sampling, taken_for };
     judged(&field, (&right, &[]), Weights::Any, &twin, shows, run)
@@ -117,8 +109,8 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 0.5, length 2, majorants 2, 0.5 (length 1 each)",
             (20_000, Evident::Mean { z: 40.4 }),
             |run| {
-                let field = Constant::new(0.5, 2.0).expect(LAWFUL);
-                let cells = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.5]).expect(LAWFUL);
+                let field = constant(0.5, 2.0);
+                let cells = unit_cells(&[2.0, 0.5]);
                 let (right, also) = (Woodcock::new(cells.clone()), cells.breakpoints());
                 judged(&field, (&right, &also), Weights::One, &PreviousCell(cells), "escaped", run)
             },
@@ -148,12 +140,12 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 0, majorant 1, variate 0",
             (0, Evident::Exactly),
             |_| {
-                let empty = Constant::new(0.0, 1.0).expect(LAWFUL);
-                let majorant = Constant::new(1.0, 1.0).expect(LAWFUL);
+                let empty = constant(0.0, 1.0);
+                let majorant = constant(1.0, 1.0);
                 // A first step of ln 2 lies on the profile; the variate 0 decides about the collision; then out.
                 let source = || Scripted::new([0.5, 0.0, 0.5]);
                 let ours = Woodcock::new(majorant).sample(&empty, &mut source());
-                let twin = CollidesAsPrinted(majorant).sample(&empty, &mut source());
+                let twin = CollidesAsPrinted(majorant).draw(&empty, &mut source());
                 let rejected = ours.distance().is_none() && twin.distance().is_some();
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },

@@ -1,8 +1,9 @@
 //! A mistake of the free flight that walks from stratum to stratum.
 
-use super::trial::LAWFUL;
+use super::trial::{LAWFUL, Wrong};
 use super::{Evident, Twin, freeflight};
-use fairflight_freeflight::{Flight, FreeFlight, JitteredFlight};
+use crate::profiles::constant;
+use fairflight_freeflight::{Flight, JitteredFlight};
 use fairflight_laws::freeflight::Weights;
 use fairflight_media::{Bounded, Constant, Majorant};
 use fairflight_sources::UniformSource;
@@ -10,8 +11,8 @@ use fairflight_sources::UniformSource;
 /// The companion free flight with ε = 1 that takes an accepted candidate for a collision.
 struct WithoutSurvivalTest;
 
-impl<F: Majorant> FreeFlight<F> for WithoutSurvivalTest {
-    fn sample(&self, field: &F, source: &mut impl UniformSource) -> Flight {
+impl<F: Majorant> Wrong<F, Flight> for WithoutSurvivalTest {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> Flight {
         let strata = (field.majorant() * field.length()).ceil();
         let width = field.length() / strata;
         for i in 0..strata as u32 {
@@ -23,14 +24,11 @@ impl<F: Majorant> FreeFlight<F> for WithoutSurvivalTest {
         }
         Flight::Escaped { weight: 1.0 }
     }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
-    }
 }
 
 /// Four strata of the optical thickness 1 in the majorant and 1/2 in the field.
 fn half() -> Bounded<Constant> {
-    Bounded::new(Constant::new(0.5, 4.0).expect(LAWFUL), 1.0).expect(LAWFUL)
+    Bounded::new(constant(0.5, 4.0), 1.0).expect(LAWFUL)
 }
 
 /// Lists the twins.

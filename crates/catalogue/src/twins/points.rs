@@ -1,10 +1,9 @@
 //! Mistakes with quasi-random points.
 
-use super::trial::LAWFUL;
 use super::{Evident, Rejection, Twin};
+use crate::profiles::constant;
 use fairflight_freeflight::{Flight, FreeFlight, Inversion};
 use fairflight_laws::{Run, measure};
-use fairflight_media::Constant;
 use fairflight_sources::UniformSource;
 use fairflight_stats::{Reference, Scores, judge};
 
@@ -24,7 +23,7 @@ impl UniformSource for Unscrambled {
 }
 
 fn judged(run: Run) -> Rejection {
-    let field = Constant::new(1.0, 1.0).expect(LAWFUL);
+    let field = constant(1.0, 1.0);
     let exact = Reference { scores: Scores::TwoValued { high: 1.0 }, ..Reference::exact((-1.0_f64).exp()) };
     let mut index = 0;
     let moments = measure(run.seed, run.samples, |_| {

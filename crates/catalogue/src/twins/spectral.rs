@@ -2,6 +2,7 @@
 
 use super::trial::LAWFUL;
 use super::{Evident, Rejection, Twin};
+use crate::profiles::constant;
 use fairflight_freeflight::ClosedForm;
 use fairflight_freeflight::spectral::{
     HeroWavelength, MaxScheme, Scheme, SpectralFlight, SpectralFreeFlight, SpectralTracking,
@@ -24,7 +25,7 @@ struct Weighing(fn(f64, f64, f64) -> f64);
 
 impl SpectralFreeFlight<Spectrum, 2> for Weighing {
     fn sample_from(&self, field: &Spectrum, past: [f64; 2], source: &mut impl UniformSource) -> Flight {
-        let sampling = Constant::new(1.0, field.length()).expect(LAWFUL);
+        let sampling = constant(1.0, field.length());
         let (mut weights, mut s) = (past, 0.0);
         while let Some(next) = sampling.invert(s, source.next_exponential()) {
             s = next;
@@ -49,7 +50,7 @@ struct ForgetsTheCollision;
 
 impl SpectralFreeFlight<Spectrum, 2> for ForgetsTheCollision {
     fn sample_from(&self, field: &Spectrum, past: [f64; 2], source: &mut impl UniformSource) -> Flight {
-        let majorant = Constant::new(1.0, field.length()).expect(LAWFUL);
+        let majorant = constant(1.0, field.length());
         let hero = usize::from(source.next_uniform() >= 0.5);
         let (mut weights, mut s) = (past, 0.0);
         while let Some(next) = majorant.invert(s, source.next_exponential()) {
@@ -72,7 +73,7 @@ impl SpectralFreeFlight<Spectrum, 2> for ForgetsTheCollision {
 
 /// Ratios 3/4 and 1/2 at a majorant of 1, length 2.
 fn spectrum() -> Spectrum {
-    Scaled::new(Constant::new(1.0, 2.0).expect(LAWFUL), [0.75, 0.5]).expect(LAWFUL)
+    Scaled::new(constant(1.0, 2.0), [0.75, 0.5]).expect(LAWFUL)
 }
 
 /// Judges `twin` by the law and the closed forms of its sibling `right`, in the first wavelength.
@@ -89,7 +90,7 @@ fn judged<E: for<'f> ClosedForm<Wavelength<&'f Spectrum, 2>>, T: SpectralFreeFli
 }
 
 fn weighed(weigh: fn(f64, f64, f64) -> f64, run: Run) -> Rejection {
-    let right = SpectralTracking::new(MaxScheme, Constant::new(1.0, 2.0).expect(LAWFUL));
+    let right = SpectralTracking::new(MaxScheme, constant(1.0, 2.0));
     judged(&right, Weights::Any, &Weighing(weigh), run)
 }
 
@@ -128,7 +129,7 @@ pub(super) fn twins() -> Vec<Twin> {
             PROFILE,
             (20_000, Evident::Mean { z: 44.1 }),
             |run| {
-                let right = HeroWavelength::new(Constant::new(1.0, 2.0).expect(LAWFUL));
+                let right = HeroWavelength::new(constant(1.0, 2.0));
                 judged(&right, Weights::UpTo(2), &ForgetsTheCollision, run)
             },
         )

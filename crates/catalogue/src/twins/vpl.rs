@@ -159,9 +159,14 @@ const MORE: u64 = 900_000;
 /// A medium so thin that the floor counts.
 const THIN: f64 = 1.0;
 
+/// A scene in words, and as it is.
+type Described = (&'static str, fn() -> Local);
+
+const TWO_LIGHTS: Described = ("two lights in a medium", || tiny::medium(2));
+
 /// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
-    let twin = |id, text, profile, (mistake, scene, z): (Mistake, fn() -> Local, f64)| {
+    let twin = |id, text, ((profile, scene), mistake, z): (Described, Mistake, f64)| {
         let is_skewed =
             [Mistake::UnboundedBehind, Mistake::SurfaceByFlight, Mistake::BehindSurfaces].contains(&mistake);
         let samples = if is_skewed { MORE } else { SAMPLES };
@@ -170,62 +175,59 @@ pub(super) fn twins() -> Vec<Twin> {
         })
         .about(["vpl"])
     };
-    let two: fn() -> Local = || tiny::medium(2);
-    let isotropic: fn() -> Local = || tiny::isotropic(2);
     vec![
         twin(
             "vpl_divided_by_lights",
             "N-to-1 of engelhardt-2013's appendix called once per eye sample: divided by the number of lights",
-            "two lights in a medium",
-            (Mistake::DividedByLights, two, 657.4),
+            (TWO_LIGHTS, Mistake::DividedByLights, 657.4),
         ),
         twin(
             "vpl_no_primary_light",
             "compensation vertices gather virtual point lights and no light source (engelhardt-2013, appendix A)",
-            "two lights in a medium",
-            (Mistake::NoPrimaryLight, two, 1038.3),
+            (TWO_LIGHTS, Mistake::NoPrimaryLight, 1038.3),
         ),
         twin(
             "vpl_unbounded_behind",
             "compensation vertices gather virtual point lights without the bound",
-            "a light beside the region of a point in a medium",
-            (Mistake::UnboundedBehind, beside, 59.9),
+            (("a light beside the region of a point in a medium", beside), Mistake::UnboundedBehind, 59.9),
         ),
         twin(
             "vpl_surface_by_free_flight",
             "a surface before the end of eq. 4 with the probability exp(-sigma s) of a free flight",
-            "a thin medium and lights on a floor and in it",
-            (Mistake::SurfaceByFlight, || tiny::near_floor(THIN), 277.3),
+            (
+                ("a thin medium and lights on a floor and in it", || tiny::near_floor(THIN)),
+                Mistake::SurfaceByFlight,
+                277.3,
+            ),
         ),
         twin(
             "vpl_without_sigma_s",
             "the phase function without sigma_s at compensation vertices (engelhardt-2013, appendix A)",
-            "two lights in a medium",
-            (Mistake::WithoutScattering, two, 1711.3),
+            (TWO_LIGHTS, Mistake::WithoutScattering, 1711.3),
         ),
         twin(
             "vpl_bound_against_distance",
             "b compared with 1/r^2 where G has cosines",
-            "a floor and lights in a medium",
-            (Mistake::BoundAgainstDistance, tiny::above_floor, 98.4),
+            (("a floor and lights in a medium", tiny::above_floor), Mistake::BoundAgainstDistance, 98.4),
         ),
         twin(
             "vpl_untruncated_density",
             "distances by eq. 5, their density without the truncation of eq. 4",
-            "two lights in a medium",
-            (Mistake::Untruncated, two, 90.4),
+            (TWO_LIGHTS, Mistake::Untruncated, 90.4),
         ),
         twin(
             "vpl_behind_surfaces",
             "compensation vertices behind a surface, which they do not see",
-            "a floor lit from both sides, lights on it and above",
-            (Mistake::BehindSurfaces, lit_from_below, 236.6),
+            (
+                ("a floor lit from both sides, lights on it and above", lit_from_below),
+                Mistake::BehindSurfaces,
+                236.6,
+            ),
         ),
         twin(
             "vpl_light_source_twice",
             "light sources leave virtual point lights where they are, and are seen by next-event estimation as well",
-            "two lights in an isotropic medium",
-            (Mistake::LightTwice, isotropic, 665.7),
+            (("two lights in an isotropic medium", || tiny::isotropic(2)), Mistake::LightTwice, 665.7),
         ),
     ]
 }

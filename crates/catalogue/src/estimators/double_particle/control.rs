@@ -1,7 +1,8 @@
 //! Mistakes with the control.
 
 use crate::checks::LAWFUL;
-use crate::twins::trial::{judged, theory_on};
+use crate::profiles::constant;
+use crate::twins::trial::{Misstated, Pretending, Wrong, judged, theory_on};
 use crate::twins::{Evident, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
@@ -9,28 +10,10 @@ use fairflight_media::{
     PiecewiseLinear,
 };
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{Explorers, Tracking, TransmittanceEstimator};
+use fairflight_transmittance::{Explorers, Tracking};
 
 fn double_particle() -> DoubleParticle {
     DoubleParticle { albedo: Albedo::default() }
-}
-
-/// A control whose transmittance is left out.
-struct WithoutThickness<C>(C);
-
-impl<C: Extinction> Extinction for WithoutThickness<C> {
-    fn sigma_t(&self, s: f64) -> f64 {
-        self.0.sigma_t(s)
-    }
-    fn length(&self) -> f64 {
-        self.0.length()
-    }
-}
-
-impl<C: OpticalThickness> OpticalThickness for WithoutThickness<C> {
-    fn optical_thickness(&self, _from: f64, _to: f64) -> f64 {
-        0.0 // right: that of the control
-    }
 }
 
 /// Fits its control to the points of its own walk.
@@ -38,8 +21,8 @@ struct FitsItsOwnWalk {
     sampling: Constant,
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for FitsItsOwnWalk {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for FitsItsOwnWalk {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let mut points = vec![0.0];
         while let Some(s) = self.sampling.invert(points[points.len() - 1], source.next_exponential()) {
             points.push(s);
@@ -53,9 +36,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for FitsItsOwnWalk {
         let weights =
             walk.iter().map(|&s| 1.0 - (field.sigma_t(s) - control.sigma_t(s)) / self.sampling.sigma_t(s));
         weights.product::<f64>() * (-control.optical_thickness(0.0, field.length())).exp()
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -72,11 +52,13 @@ pub(super) fn twins() -> Vec<Twin> {
             |run| {
                 let field =
                     PiecewiseConstant::new(vec![0.0, 1.0, 2.5, 4.0], vec![1.0, 0.2, 0.6]).expect(LAWFUL);
-                let control = Constant::new(0.5, 4.0).expect(LAWFUL);
-                let sampling = Constant::new(2.0, 4.0).expect(LAWFUL);
+                let control = constant(0.5, 4.0);
+                let sampling = constant(2.0, 4.0);
                 let right = Tracking::new(double_particle(), control, sampling);
                 let theory = theory_on(&field, &right, &[]);
-                let twin = Tracking::new(double_particle(), WithoutThickness(control), sampling);
+                // Right: the thickness of the control.
+                let control = Misstated { field: control, thickness: |_, _, _| 0.0 };
+                let twin = Tracking::new(double_particle(), control, sampling);
                 judged(&field, &twin, theory, run)
             },
         ),
@@ -89,12 +71,12 @@ pub(super) fn twins() -> Vec<Twin> {
             (50_000, Evident::Mean { z: 465.0 }),
             |run| {
                 let field = PiecewiseLinear::new(vec![0.0, 1.5, 3.0], vec![0.0, 2.0, 0.0]).expect(LAWFUL);
-                let sampling = Constant::new(2.0, 3.0).expect(LAWFUL);
+                let sampling = constant(2.0, 3.0);
                 let control = Explorers::through(&field, 4).expect(LAWFUL);
                 let also = control.breakpoints();
                 let right = Tracking::new(double_particle(), control, sampling);
                 let theory = theory_on(&field, &right, &also);
-                judged(&field, &FitsItsOwnWalk { sampling }, theory, run)
+                judged(&field, &Pretending(&FitsItsOwnWalk { sampling }), theory, run)
             },
         ),
     ]

@@ -1,9 +1,9 @@
 //! −log(u): infinite at u = 0 (raab-2008 algorithm 1 as printed).
 
-use crate::checks::LAWFUL;
+use crate::profiles::constant;
 use crate::twins::{Evident, Rejection, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Constant, Vacuum};
+use fairflight_media::Vacuum;
 use fairflight_sources::{Scripted, UniformSource};
 use fairflight_transmittance::{Tracking, TransmittanceEstimator};
 
@@ -29,7 +29,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t = sigma_samp = 1, length 1, variate 0",
             (0, Evident::Exactly),
             |_| {
-                let field = Constant::new(1.0, 1.0).expect(LAWFUL);
+                let field = constant(1.0, 1.0);
                 let model = DoubleParticle { albedo: Albedo::default() };
                 let estimator = Tracking::new(model, Vacuum::new(1.0), field);
                 // The variate 0 is the shortest flight, which collides at once and absorbs all; printed, it is the longest.

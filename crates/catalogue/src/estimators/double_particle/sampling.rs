@@ -1,6 +1,6 @@
 //! Mistakes with the sampling extinction.
 
-use crate::checks::LAWFUL;
+use crate::profiles::unit_cells;
 use crate::twins::trial::{judged, theory_on};
 use crate::twins::{Evident, Twin};
 use fairflight_collision::{Albedo, DoubleParticle};
@@ -35,7 +35,7 @@ impl InvertOpticalThickness for DividesByItsMean {
 
 /// A rate that vanishes where there is something to collide with: the rate itself is the wrong line.
 fn with_a_hole() -> PiecewiseConstant {
-    PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.0]).expect(LAWFUL)
+    unit_cells(&[2.0, 0.0])
 }
 
 fn tracking<R: InvertOpticalThickness>(sampling: R) -> Tracking<DoubleParticle, Vacuum, R> {
@@ -44,7 +44,7 @@ fn tracking<R: InvertOpticalThickness>(sampling: R) -> Tracking<DoubleParticle, 
 
 /// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
-    let field = || PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.25]).expect(LAWFUL);
+    let field = || unit_cells(&[1.0, 0.25]);
     vec![
         // Rate 2 and 0.5, mean 1.25: E = exp(−(1·2 + 0.25·0.5)/1.25) = exp(−1.7) for exp(−1.25).
         Twin::new(
@@ -54,7 +54,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, 0.25 (length 1 each), sigma_samp 2, 0.5",
             (50_000, Evident::Mean { z: 87.0 }),
             move |run| {
-                let rate = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![2.0, 0.5]).expect(LAWFUL);
+                let rate = unit_cells(&[2.0, 0.5]);
                 let theory = theory_on(field(), &tracking(rate.clone()), &rate.breakpoints());
                 judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
             },

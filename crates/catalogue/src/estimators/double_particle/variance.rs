@@ -1,10 +1,10 @@
 //! A wrong closed form: the estimator is right, its theory is not. The test of the variance must say so.
 
-use crate::checks::LAWFUL;
+use crate::profiles::{constant, unit_cells};
 use crate::twins::trial::{judged, theory_on};
 use crate::twins::{Evident, Twin};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
-use fairflight_media::{Constant, PiecewiseConstant, RayQuadrature, Tolerance};
+use fairflight_media::{PiecewiseConstant, RayQuadrature, Tolerance};
 use fairflight_transmittance::{ProductLaw, Theory, Tracking};
 
 /// szirmay-kalos-2017 eq. 16 and 17 with σ_t in the place of σ_diff: w is made of the whole extinction although a control has taken its part.
@@ -37,9 +37,9 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, 0.5 (length 1 each), control 0.5, sigma_samp 8",
             (400_000, Evident::Variance { z: 288.0 }),
             |run| {
-                let field = PiecewiseConstant::new(vec![0.0, 1.0, 2.0], vec![1.0, 0.5]).expect(LAWFUL);
+                let field = unit_cells(&[1.0, 0.5]);
                 let (control, sampling) =
-                    (Constant::new(0.5, 2.0).expect(LAWFUL), Constant::new(8.0, 2.0).expect(LAWFUL));
+                    (constant(0.5, 2.0), constant(8.0, 2.0));
                 let model = DoubleParticle { albedo: Albedo::default() };
                 let estimator = Tracking::new(model, control, sampling);
                 let right = theory_on(&field, &estimator, &[]);

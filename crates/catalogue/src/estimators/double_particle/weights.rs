@@ -1,6 +1,6 @@
 //! Mistakes in the weight of one collision, each in one line of a collision model or of the walk.
 
-use crate::checks::LAWFUL;
+use crate::profiles::constant;
 use crate::twins::trial::{judged, theory_on};
 use crate::twins::{Evident, Rejection, Twin};
 use fairflight_collision::{Albedo, Branch, CollisionModel, DoubleParticle};
@@ -34,14 +34,14 @@ impl CollisionModel for WrongWeight {
 
 /// σ_t = 1 on a length of 2, as in hard case 3.
 fn field() -> Constant {
-    Constant::new(1.0, 2.0).expect(LAWFUL)
+    constant(1.0, 2.0)
 }
 
 fn wrong_weight(weight: fn(f64) -> f64, sampling: f64, run: Run) -> Rejection {
     // r = 1/σ_samp: the exact law of collisions sees it too.
     let model = WrongWeight(weight);
     let exact = collision::check(&model, 0.0, &[1.0 / sampling]);
-    let sampling = Constant::new(sampling, 2.0).expect(LAWFUL);
+    let sampling = constant(sampling, 2.0);
     let theory = theory_on(field(), &Tracking::new(right(), Vacuum::new(2.0), sampling), &[]);
     let rejection = judged(&field(), &Tracking::new(model, Vacuum::new(2.0), sampling), theory, run);
     Rejection { rejected: rejection.rejected && exact.is_err(), ..rejection }

@@ -1,17 +1,15 @@
 //! Mistakes in unbiased ray marching, most of them found in public code.
 
 use crate::checks::LAWFUL;
-use crate::twins::trial::{judged, theory_on};
+use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
 use fairflight_media::{AnalyticCosine, Clip, Extinction, PiecewiseConstant, Ray};
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{
-    Comb, CombShape, Roulette, SymmetricMeans, TransmittanceEstimator, UnbiasedRayMarching,
-};
+use fairflight_transmittance::{Comb, CombShape, Roulette, SymmetricMeans, UnbiasedRayMarching};
 use glam::DVec3;
 
 /// Unbiased ray marching in parts, one of which is wrong.
-struct Wrong {
+struct Parts {
     comb: Comb,
     roulette: Roulette,
     /// Draws the order for this P.
@@ -20,7 +18,7 @@ struct Wrong {
     means: fn(&[f64], &mut Vec<f64>),
 }
 
-impl Wrong {
+impl Parts {
     fn right(comb: Comb, roulette: Roulette) -> Self {
         Self { comb, roulette, order: right_order, means: right_means }
     }
@@ -59,16 +57,13 @@ fn averaged_over_pivots(x: &[f64], roulette: Roulette, means_of: fn(&[f64], &mut
     sum / x.len() as f64
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for Wrong {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for Parts {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let order = (self.order)(self.roulette.going_on(), &mut || source.next_uniform());
         let x: Vec<f64> =
             (0..=order).map(|_| self.comb.thickness(field, &prepared, source.next_uniform())).collect();
         averaged_over_pivots(&x, self.roulette, self.means)
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -85,14 +80,13 @@ fn on_two_values(
     profile: &'static str,
     (values, stop_probability): ((f64, f64), f64),
     (samples, z): (u64, f64),
-    wrong: fn(Wrong) -> Wrong,
+    wrong: fn(Parts) -> Parts,
 ) -> Twin {
     Twin::new("unbiased combs", id, mistake, profile, (samples, Evident::Mean { z }), move |run| {
         let comb = Comb::new(1, CombShape::Uniform).expect(LAWFUL);
         let roulette = Roulette::new(stop_probability).expect(LAWFUL);
-        let field = two_values(values);
-        let theory = theory_on(&field, &UnbiasedRayMarching::new(comb, roulette), &[]);
-        judged(&field, &wrong(Wrong::right(comb, roulette)), theory, run)
+        let right = UnbiasedRayMarching::new(comb, roulette);
+        judged_as(&right, &wrong(Parts::right(comb, roulette)), &two_values(values), run)
     })
 }
 
@@ -142,8 +136,8 @@ struct ShiftedByALength {
     teeth: u32,
 }
 
-impl<F: Extinction> TransmittanceEstimator<F> for ShiftedByALength {
-    fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
+impl<F: Extinction> Wrong<F> for ShiftedByALength {
+    fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (length, step) = (field.length(), field.length() / f64::from(self.teeth));
         let order = right_order(Roulette::KETTUNEN.going_on(), &mut || source.next_uniform());
         let mut thickness = || {
@@ -153,9 +147,6 @@ impl<F: Extinction> TransmittanceEstimator<F> for ShiftedByALength {
         };
         let x: Vec<f64> = (0..=order).map(|_| thickness()).collect();
         averaged_over_pivots(&x, Roulette::KETTUNEN, right_means)
-    }
-    fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
-        true
     }
 }
 
@@ -169,7 +160,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 2 on a fifth of a unit, else 0, one tooth, stop probability 0.1",
             ((0.2, 2.0), 0.1),
             (150_000, 27.0),
-            |wrong| Wrong { means: means_from_zero, ..wrong },
+            |wrong| Parts { means: means_from_zero, ..wrong },
         ),
         on_two_values(
             "roulette_variate_rescaled",
@@ -178,7 +169,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 2 on four fifths of a unit, else 0, one tooth, stop probability 0.5",
             ((0.8, 2.0), 0.5),
             (80_000, 27.5),
-            |wrong| Wrong { order: rescaled_order, ..wrong },
+            |wrong| Parts { order: rescaled_order, ..wrong },
         ),
         on_two_values(
             "order_capped",
@@ -186,7 +177,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 2 on four fifths of a unit, else 0, one tooth, stop probability 0.1",
             ((0.8, 2.0), 0.1),
             (200_000, 28.0),
-            |wrong| Wrong { order: |going_on, variate| right_order(going_on, variate).min(4), ..wrong },
+            |wrong| Parts { order: |going_on, variate| right_order(going_on, variate).min(4), ..wrong },
         ),
         on_two_values(
             "pivot_among_its_differences",
@@ -195,7 +186,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 2.2 on four fifths of a unit, else 0, one tooth, stop probability 0",
             ((0.8, 2.2), 0.0),
             (1_200_000, 33.2),
-            |wrong| Wrong { means: means_with_pivot, ..wrong },
+            |wrong| Parts { means: means_with_pivot, ..wrong },
         ),
         Twin::new(
             "unbiased combs",
@@ -209,8 +200,8 @@ pub(super) fn twins() -> Vec<Twin> {
                 let clip: Clip = clip.expect(LAWFUL).expect(LAWFUL);
                 let ray = Ray::new(AnalyticCosine::new(1.0).expect(LAWFUL), &clip);
                 let comb = Comb::new(12, CombShape::Uniform).expect(LAWFUL);
-                let theory = theory_on(ray, &UnbiasedRayMarching::new(comb, Roulette::KETTUNEN), &[]);
-                judged(&ray, &ShiftedByALength { teeth: 12 }, theory, run)
+                let right = UnbiasedRayMarching::new(comb, Roulette::KETTUNEN);
+                judged_as(&right, &ShiftedByALength { teeth: 12 }, &ray, run)
             },
         ),
     ]

@@ -1,6 +1,7 @@
 //! A profile that knows all that an estimator or a sampler may ask for.
 
 use crate::hard_cases::LAWFUL;
+use crate::profiles::constant;
 use fairflight_laws::DenseLattice;
 use fairflight_media::{
     BoundCell, BoundedInCells, Breakpoints, Cells, Constant, Extinction, InvertOpticalThickness, Majorant,
@@ -38,7 +39,7 @@ impl Profile {
     pub(crate) fn constant(sigma_t: f64, length: f64, (minorant, majorant): (f64, f64)) -> Self {
         let cell = BoundCell { to: length, minorant, majorant };
         let cells = if length > 0.0 { vec![cell] } else { Vec::new() };
-        Self::new(Along::Constant(Constant::new(sigma_t, length).expect(LAWFUL)), cells)
+        Self::new(Along::Constant(constant(sigma_t, length)), cells)
     }
 
     /// Steps, each of which is a cell from 0 to its value; a negative one from that to its magnitude.

@@ -16,6 +16,9 @@ pub(super) enum Setting {
     Broken,
 }
 
+/// A profile with its name.
+type Named = (String, Profile, Setting);
+
 /// One row.
 #[derive(Clone)]
 pub(super) struct Row {
@@ -24,8 +27,8 @@ pub(super) struct Row {
     pub(super) what: &'static str,
     /// The exact answer.
     pub(super) exact: &'static str,
-    /// The profiles, each with a name.
-    pub(super) settings: Vec<(String, Profile, Setting)>,
+    /// The profiles.
+    pub(super) settings: Vec<Named>,
     /// The greatest N on each.
     pub(super) samples: u64,
 }
@@ -33,6 +36,11 @@ pub(super) struct Row {
 /// N where a bias of some hundredths is to be seen, and where any answer but the right one is far off.
 const FEW: u64 = 2_000;
 const SOME: u64 = 20_000;
+
+/// A profile for each of these numbers.
+fn each<const N: usize>(numbers: [f64; N], profile: impl Fn(f64) -> Named) -> Vec<Named> {
+    numbers.map(profile).to_vec()
+}
 
 /// The rows that are made kind by kind, by number.
 pub(super) fn rows() -> Vec<Row> {
@@ -43,7 +51,7 @@ pub(super) fn rows() -> Vec<Row> {
         lawful(format!("optical thickness {tau:e}"), Profile::constant(tau, 1.0, (0.0, majorant)))
     };
     let faults = [("NaN", f64::NAN), ("inf", f64::INFINITY), ("-inf", f64::NEG_INFINITY)];
-    let mut broken: Vec<(String, Profile, Setting)> = faults
+    let mut broken: Vec<Named> = faults
         .into_iter()
         .map(|(name, value)| (name.to_owned(), Profile::faulty(value), Setting::Broken))
         .collect();
@@ -60,11 +68,9 @@ pub(super) fn rows() -> Vec<Row> {
             number: 2,
             what: "nothing on the ray, majorants of optical thickness 88, 745 and 2000",
             exact: "1 (nothing attenuates)",
-            settings: [88.0, 745.0, 2000.0]
-                .map(|depth: f64| {
-                    lawful(format!("majorant {depth}"), Profile::constant(0.0, 2.0, (0.0, 0.5 * depth)))
-                })
-                .to_vec(),
+            settings: each([88.0, 745.0, 2000.0], |depth| {
+                lawful(format!("majorant {depth}"), Profile::constant(0.0, 2.0, (0.0, 0.5 * depth)))
+            }),
             samples: FEW,
         },
         Row {
@@ -96,16 +102,16 @@ pub(super) fn rows() -> Vec<Row> {
             number: 7,
             what: "a null probability of 1e-8 or a rounding, or 0",
             exact: "exp(-1)",
-            settings: [0.0, 1e-8, f64::EPSILON]
-                .map(|delta| lawful(format!("{delta:e}"), Profile::constant(1.0, 1.0, (0.0, 1.0 + delta))))
-                .to_vec(),
+            settings: each([0.0, 1e-8, f64::EPSILON], |delta| {
+                lawful(format!("{delta:e}"), Profile::constant(1.0, 1.0, (0.0, 1.0 + delta)))
+            }),
             samples: FEW,
         },
         Row {
             number: 8,
             what: "optical thicknesses from 1e-12 to 1e6",
             exact: "exp(-tau)",
-            settings: [1e-12, 1e-3, 1.0, 50.0, 700.0, 800.0, 1e6].map(thickness).to_vec(),
+            settings: each([1e-12, 1e-3, 1.0, 50.0, 700.0, 800.0, 1e6], thickness),
             samples: FEW,
         },
         Row {
@@ -142,11 +148,9 @@ pub(super) fn rows() -> Vec<Row> {
             number: 12,
             what: "segments of length 0, 4, 16 and 20",
             exact: "exp(-0.5 * length)",
-            settings: [0.0, 4.0, 16.0, 20.0]
-                .map(|length: f64| {
-                    lawful(format!("length {length}"), Profile::constant(0.5, length, (0.0, 0.6)))
-                })
-                .to_vec(),
+            settings: each([0.0, 4.0, 16.0, 20.0], |length| {
+                lawful(format!("length {length}"), Profile::constant(0.5, length, (0.0, 0.6)))
+            }),
             samples: FEW,
         },
         Row {
@@ -167,11 +171,9 @@ pub(super) fn rows() -> Vec<Row> {
             number: 21,
             what: "heavy tails: a majorant of 1/J below sigma_t 1, J = 5, 20 and 100",
             exact: "exp(-1), or \"not testable at this N\"",
-            settings: [5.0, 20.0, 100.0]
-                .map(|j: f64| {
-                    (format!("J = {j}"), Profile::constant(1.0, 1.0, (0.0, 1.0 / j)), Setting::Above)
-                })
-                .to_vec(),
+            settings: each([5.0, 20.0, 100.0], |j| {
+                (format!("J = {j}"), Profile::constant(1.0, 1.0, (0.0, 1.0 / j)), Setting::Above)
+            }),
             samples: SOME,
         },
     ]
