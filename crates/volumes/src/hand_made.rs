@@ -109,6 +109,11 @@ fn head(tiles: u32, nodes: u32) -> Vec<u8> {
     [1_u32.to_le_bytes(), 0.5_f32.to_le_bytes(), tiles.to_le_bytes(), nodes.to_le_bytes()].concat()
 }
 
+/// A tree of one upper node at the origin, up to its values: the bytes of its masks of children and of active tiles.
+fn upper_node(children: u8, active: u8) -> Vec<u8> {
+    [&head(0, 1)[..], &[0; 12], &[children; 4096], &[active; 4096], &[0]].concat()
+}
+
 fn tile(origin: [i32; 3], value: f32, active: bool) -> Vec<u8> {
     let mut bytes: Vec<u8> = origin.iter().flat_map(|coordinate| coordinate.to_le_bytes()).collect();
     bytes.extend(value.to_le_bytes());
@@ -152,22 +157,15 @@ fn stated_counts_do_not_decide_over_memory() {
 
 #[test]
 fn stated_children_do_not_decide_over_memory() {
-    // One upper node at the origin all of whose slots claim to be children; its values are all omitted.
-    let mut tree = head(0, 1);
-    tree.extend([0; 12]);
-    tree.extend([0xff; 4096]);
-    tree.extend([0; 4097]);
-    let file = File { compression: 2, ..File::new(tree) };
+    // All slots claim to be children; values are all omitted.
+    let file = File { compression: 2, ..File::new(upper_node(0xff, 0)) };
     assert!(matches!(file.read(), Err(VdbError::Truncated { .. })));
 }
 
 #[test]
 fn a_slot_is_not_child_and_tile_at_once() {
-    let mut tree = head(0, 1);
-    tree.extend([0; 12]);
-    tree.extend([0xff; 8192]);
-    tree.push(0);
-    assert_eq!(File::new(tree).corruption(), "a slot of a node is both a child and an active tile");
+    let file = File::new(upper_node(0xff, 0xff));
+    assert_eq!(file.corruption(), "a slot of a node is both a child and an active tile");
 }
 
 #[test]
