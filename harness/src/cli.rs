@@ -84,6 +84,17 @@ pub(crate) struct SchemaArguments {
     pub tables: bool,
 }
 
+/// Values of an OpenVDB fog volume: their grid and their unit.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct VolumeValues {
+    /// The grid of that file [default: density, or else its only float grid]
+    #[arg(long, value_name = "NAME", requires = "vdb")]
+    pub grid: Option<String>,
+    /// A factor in front of its values
+    #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
+    pub scale: f64,
+}
+
 /// Arguments of `report`.
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = crate::report::registry::times())]
@@ -97,12 +108,8 @@ pub(crate) struct ReportArguments {
     /// An OpenVDB fog volume to be reported on as well
     #[arg(long, value_name = "FILE")]
     pub vdb: Option<PathBuf>,
-    /// The grid of that file [default: density, or else its only float grid]
-    #[arg(long, value_name = "NAME", requires = "vdb")]
-    pub grid: Option<String>,
-    /// A factor in front of its values
-    #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
-    pub scale: f64,
+    #[command(flatten)]
+    pub values: VolumeValues,
     /// A page without script: static figures only, small enough to be kept in a repository
     #[arg(long)]
     pub static_figures: bool,
@@ -127,8 +134,7 @@ impl Default for ReportArguments {
             name: "standard".to_owned(),
             quick: false,
             vdb: None,
-            grid: None,
-            scale: 1.0,
+            values: VolumeValues { grid: None, scale: 1.0 },
             static_figures: false,
             out: None,
             seed: 1,
@@ -178,12 +184,8 @@ pub(crate) struct AdviseArguments {
     /// Instead, an OpenVDB fog volume
     #[arg(long, value_name = "FILE")]
     pub vdb: Option<PathBuf>,
-    /// The grid of that file [default: density, or else its only float grid]
-    #[arg(long, value_name = "NAME", requires = "vdb")]
-    pub grid: Option<String>,
-    /// A factor in front of its values
-    #[arg(long, value_name = "NUMBER", requires = "vdb", default_value_t = 1.0)]
-    pub scale: f64,
+    #[command(flatten)]
+    pub values: VolumeValues,
     /// JSON on a terminal too, and no table
     #[arg(long)]
     pub json: bool,

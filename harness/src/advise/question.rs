@@ -71,7 +71,7 @@ impl Question {
                 Ok(Self { name, input, medium, bounds, camera, rays: usize::from(rays), seed, majorant })
             };
         if let Some(file) = &arguments.vdb {
-            let volume = Volume { file: file.clone(), grid: arguments.grid.clone(), scale: arguments.scale };
+            let volume = Volume::new(file, &arguments.values);
             return question(file.display().to_string(), None, &volume.medium(), None);
         }
         let Some(file) = &arguments.medium else {

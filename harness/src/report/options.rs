@@ -1,9 +1,9 @@
 //! Choices of whoever asks for a report.
 
 use crate::budget::Budget;
-use crate::cli::ReportArguments;
+use crate::cli::{ReportArguments, VolumeValues};
 use crate::field::{MediumSpec, VdbSpec};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// An OpenVDB fog volume.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,11 @@ pub(crate) struct Volume {
 }
 
 impl Volume {
+    /// The volume that a command line names.
+    pub(crate) fn new(file: &Path, values: &VolumeValues) -> Self {
+        Self { file: file.to_owned(), grid: values.grid.clone(), scale: values.scale }
+    }
+
     /// The medium that it is, its voxels nowhere below 0.
     #[must_use]
     pub(crate) fn medium(&self) -> MediumSpec {
@@ -43,16 +48,11 @@ pub(crate) struct Options {
 impl Options {
     /// The options of a command line, on the threads of the current pool.
     pub(crate) fn of(arguments: &ReportArguments) -> Self {
-        let volume = |file: &PathBuf| Volume {
-            file: file.clone(),
-            grid: arguments.grid.clone(),
-            scale: arguments.scale,
-        };
         Self {
             quick: arguments.quick,
             seed: arguments.seed,
             threads: rayon::current_num_threads(),
-            vdb: arguments.vdb.as_ref().map(volume),
+            vdb: arguments.vdb.as_ref().map(|file| Volume::new(file, &arguments.values)),
             budget: Budget::of(arguments.budget),
         }
     }
