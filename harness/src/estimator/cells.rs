@@ -27,23 +27,15 @@ pub enum CellsSpec {
 
 impl Ruled for CellsSpec {
     fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        if !node.is_object() {
-            return match node.integer(1, MOST) {
-                Ok(count) => Ok(Self::Count(count as u32)),
-                Err(_) => {
-                    Err(node
-                        .refuse("must be a number of cells, or an object of edges, minorants and majorants"))
-                }
-            };
-        }
-        let object = node.object()?;
-        let spec = Self::Given {
-            edges: object.required("edges")?.numbers()?,
-            minorants: object.required("minorants")?.numbers()?,
-            majorants: object.required("majorants")?.numbers()?,
-        };
-        object.finish()?;
-        Ok(spec)
+        node.bare_or_object(
+            "must be a number of cells, or an object of edges, minorants and majorants",
+            |bare| bare.integer(1, MOST).map(|count| Self::Count(count as u32)),
+            |object| {
+                let numbers = |key| object.required(key)?.numbers();
+                let (edges, minorants) = (numbers("edges")?, numbers("minorants")?);
+                Ok(Self::Given { edges, minorants, majorants: numbers("majorants")? })
+            },
+        )
     }
 
     fn written(&self) -> Value {

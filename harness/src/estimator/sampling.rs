@@ -26,20 +26,18 @@ pub enum SamplingSpec {
 
 impl Ruled for SamplingSpec {
     fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        if !node.is_object() {
-            return node.non_negative().map(Self::Constant).map_err(|_| {
-                node.refuse("must be a number of at least 0, or an object of edges and values")
-            });
-        }
-        let object = node.object()?;
-        let edges = object.required("edges")?.numbers()?;
-        let values = object.required("values")?;
-        for value in values.items()? {
-            value.non_negative()?;
-        }
-        let values = values.numbers()?;
-        object.finish()?;
-        Ok(Self::PiecewiseConstant { edges, values })
+        node.bare_or_object(
+            "must be a number of at least 0, or an object of edges and values",
+            |bare| bare.non_negative().map(Self::Constant),
+            |object| {
+                let edges = object.required("edges")?.numbers()?;
+                let values = object.required("values")?;
+                for value in values.items()? {
+                    value.non_negative()?;
+                }
+                Ok(Self::PiecewiseConstant { edges, values: values.numbers()? })
+            },
+        )
     }
 
     fn written(&self) -> Value {

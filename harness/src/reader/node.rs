@@ -73,6 +73,25 @@ impl<'a> Node<'a> {
         })
     }
 
+    /// A bare value, or what the keys of an object say; `allowed` names both.
+    ///
+    /// # Errors
+    /// If it is neither, or a key is missing, unknown or wrong.
+    pub fn bare_or_object<T>(
+        &self,
+        allowed: &str,
+        bare: impl FnOnce(&Self) -> Result<T, Failure>,
+        keys: impl FnOnce(&Object<'a>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        if !self.is_object() {
+            return bare(self).map_err(|_| self.refuse(allowed));
+        }
+        let object = self.object()?;
+        let value = keys(&object)?;
+        object.finish()?;
+        Ok(value)
+    }
+
     /// True if this value is an object.
     #[must_use]
     pub fn is_object(&self) -> bool {
