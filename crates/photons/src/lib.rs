@@ -56,11 +56,13 @@
 //! assert!((beam.radiance(&ray, &mut source) - 1.0).abs() < 0.2);
 //! ```
 
+mod any;
 mod beam;
 mod guide;
 mod map;
 mod tree;
 
+pub use any::AnyExtension;
 pub use beam::{BeamRadiance, NotARadius, SurfaceLight};
 pub use guide::{GuideOptions, Guided};
 pub use map::{Photon, PhotonMap};

@@ -7,10 +7,10 @@ use common::{Made, Scene, against, along, ball, courtyard, difference, diffuse, 
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, Homogeneous, Line, LineThickness};
-use fairflight_paths::extend::{Extended, Extension, OwnShare};
+use fairflight_paths::extend::{Extended, Extension, Own, OwnShare, Resampled};
 use fairflight_paths::transport::{Lobe, Types, Vertex, World};
 use fairflight_paths::{Integrator, Uniform, Walk};
-use fairflight_photons::{GuideOptions, Guided, PhotonMap};
+use fairflight_photons::{AnyExtension, GuideOptions, Guided, PhotonMap};
 use fairflight_scene::{Background, Lights, Surfaces};
 use fairflight_sources::{Seeded, UniformSource, derive_seed};
 use fairflight_stats::{Moments, Verdict};
@@ -271,6 +271,22 @@ fn a_sample_allocates_nothing() {
         assert!(sum > 0.0);
     });
     assert_eq!(allocated.count_total, 0);
+}
+
+#[test]
+fn any_of_them_is_the_one_that_it_holds() {
+    let scene = courtyard();
+    let map = traced(&scene, 500, 1);
+    let resampled = Resampled::new(NonZeroU32::new(3).unwrap(), OwnShare::default());
+    fn sum(scene: &Scene<Homogeneous>, extension: impl Extension<Made<Homogeneous>>) -> f64 {
+        let mut tracer = scene.plain().with_extension(extension);
+        let mut source = Seeded::new(3);
+        (0..200).map(|_| tracer.radiance(&scene.eye, &mut source)).sum()
+    }
+    let guided = || Guided::new(&map, options(0.5));
+    assert_eq!(sum(&scene, AnyExtension::Own), sum(&scene, Own));
+    assert_eq!(sum(&scene, AnyExtension::Guided(guided())), sum(&scene, guided()));
+    assert_eq!(sum(&scene, AnyExtension::Resampled(resampled)), sum(&scene, resampled));
 }
 
 #[test]
