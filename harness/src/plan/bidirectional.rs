@@ -91,7 +91,7 @@ impl<M: LineThickness> WeightThickness<M> for ThicknessSpec {
 
 /// Nothing, by no strategy.
 fn nothing<C>() -> Splatted<C> {
-    Splatted { tally: Tally::new(), ..Splatted::none() }
+    Splatted { tally: Tally::zero(), ..Splatted::none() }
 }
 
 /// The integrator of one tile: each sample of a pixel traces its light paths, and connects with the first of them.

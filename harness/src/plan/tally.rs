@@ -14,7 +14,7 @@ pub struct Tally(Vec<f64>);
 impl Tally {
     /// Sums of 0.
     #[must_use]
-    pub fn new() -> Self {
+    pub fn zero() -> Self {
         Self(vec![0.0; TOLD + 1])
     }
 
@@ -54,7 +54,7 @@ mod tests {
 
     #[test]
     fn each_strategy_has_a_sum_of_its_own() {
-        let mut tally = Tally::new();
+        let mut tally = Tally::zero();
         for (index, strategy) in Tally::strategies().enumerate() {
             tally.add(strategy.unwrap_or(Strategy { light: 7, eye: 5 }), 1.0 + index as f64);
         }

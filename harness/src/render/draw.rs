@@ -47,7 +47,7 @@ pub(super) trait Scene<C>: Sync {
     ///
     /// # Errors
     /// If the integrator does not fit the scene, a look-up is not lawful, or the work fails.
-    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(Added<C>, Spent), Failure>;
+    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> TileResult<C>;
 }
 
 /// A scene whose medium has the type M.
@@ -68,7 +68,7 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
         }
     }
 
-    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> Result<(Added<C>, Spent), Failure> {
+    fn integrate(&self, batch: &Batch<C>, work: &mut Work<'_, C>) -> TileResult<C> {
         let Self { draw, medium, emitters } = self;
         let clock = ThreadTime::now();
         let volume = draw.volume(*medium);
@@ -103,7 +103,10 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
 }
 
 /// Draws a tile: what came of it, and the cost.
-type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> Result<(Added<C>, Spent), Failure> + Sync + 'a;
+type DrawTile<'a, C> = dyn Fn(&mut Tile<C>) -> TileResult<C> + Sync + 'a;
+
+/// Sums that a tile adds, and the work that they took.
+type TileResult<C> = Result<(Added<C>, Spent), Failure>;
 
 /// The volume of a tile, observed.
 pub(super) type ObservedVolume<'a, M, C> = SceneVolume<'a, Observed<M>, C>;
@@ -228,7 +231,7 @@ impl<'a, C: Spectrum> Draw<'a, C> {
     ) -> Result<Vec<(Added<C>, Spent)>, Failure> {
         // A tile behind the first failure is not drawn; one before it is, since it might fail too.
         let first_failure = AtomicUsize::new(usize::MAX);
-        let done: Vec<Option<Result<(Added<C>, Spent), Failure>>> = tiles
+        let done: Vec<Option<TileResult<C>>> = tiles
             .par_iter_mut()
             .enumerate()
             .with_max_len(1)
@@ -283,11 +286,7 @@ mod tests {
             Ok((Batch { bound: number, ..Batch::none() }, Spent { lookups: 7, ..Spent::default() }))
         }
 
-        fn integrate(
-            &self,
-            batch: &Batch<f64>,
-            work: &mut Work<'_, f64>,
-        ) -> Result<(Added<f64>, Spent), Failure> {
+        fn integrate(&self, batch: &Batch<f64>, work: &mut Work<'_, f64>) -> TileResult<f64> {
             let added = work(&mut Shows(batch.bound))?;
             let truncated = added.counts.truncated;
             Ok((added, Spent { truncated, ..Spent::default() }))

@@ -23,10 +23,9 @@ fn small(scene: &str, integrator: &Value) -> Value {
 }
 
 /// With these keys beside its kind.
-fn bidirectional(keys: Value) -> Value {
-    let mut integrator = json!({ "kind": "bidirectional" });
-    integrator.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
-    integrator
+fn bidirectional(mut keys: Value) -> Value {
+    keys["kind"] = json!("bidirectional");
+    keys
 }
 
 /// The mean of an image, and its standard error.
