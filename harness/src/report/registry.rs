@@ -24,7 +24,7 @@ pub(crate) const REPORTS: [ReportKind; 6] = [
         name: "standard",
         about: "transmittance estimators against their closed forms",
         takes_volume: true,
-        takes: ["35 s", "9 s"],
+        takes: ["30 s", "9 s"],
         study: standard::study,
     },
     ReportKind {
@@ -52,14 +52,14 @@ pub(crate) const REPORTS: [ReportKind; 6] = [
         name: "vpl",
         about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
         takes_volume: false,
-        takes: ["> 2.5 min", "24 s"],
+        takes: ["3.6 min", "24 s"],
         study: |run| Finished::of(virtual_lights::document(run)?),
     },
     ReportKind {
         name: "estimators",
         about: "all estimators of transmittance: the canonical plane, random rays, speed against error, which to use",
         takes_volume: true,
-        takes: ["5.5 min", "47 s"],
+        takes: ["5 min", "47 s"],
         study: |run| Finished::of(estimators::document(run)?),
     },
 ];

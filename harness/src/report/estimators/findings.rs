@@ -13,10 +13,6 @@ const SMOOTH: f64 = 1e4;
 const SHARE: f64 = 0.9;
 
 pub(super) fn summary(seed: &SeedRay, plane: &Plane, standings: &[Standings]) -> Vec<String> {
-    let mut summary = vec![format!(
-        "{} of {} variances of an earlier numerical study on the seed ray are reproduced within their error.",
-        seed.reproduced, seed.compared
-    )];
     let winners: Vec<String> = plane
         .wins
         .iter()
@@ -24,11 +20,7 @@ pub(super) fn summary(seed: &SeedRay, plane: &Plane, standings: &[Standings]) ->
         .take(4)
         .map(|(name, points)| format!("{name} ({points})"))
         .collect();
-    summary.push(format!(
-        "On the canonical plane of {} points the winners per look-up are {}.",
-        plane.cells,
-        winners.join(", ")
-    ));
+    let mut summary = Vec::new();
     for standings in standings {
         let best_of =
             |of: &dyn Fn(&Standing) -> f64| standings.rows.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
@@ -51,6 +43,15 @@ pub(super) fn summary(seed: &SeedRay, plane: &Plane, standings: &[Standings]) ->
             ));
         }
     }
+    summary.push(format!(
+        "On the canonical plane of {} points the winners per look-up are {}.",
+        plane.cells,
+        winners.join(", ")
+    ));
+    summary.push(format!(
+        "{} of {} variances of an earlier numerical study on the seed ray are reproduced within their error.",
+        seed.reproduced, seed.compared
+    ));
     summary
 }
 
