@@ -32,22 +32,22 @@ fn panel(panel: &mut Panel) {
         ((on(&panel.x, at) - x.low) / (x.high - x.low), ends)
     };
     for curve in &mut panel.curves {
-        let places = curve.line.iter().map(|it| place((it.x, heights(it)))).collect();
-        keep(&mut curve.line, places);
-        let places = curve.area.iter().map(|it: &Area| place((it.x, it.y))).collect();
-        keep(&mut curve.area, places);
+        let places: Vec<_> = curve.line.iter().map(|it| place((it.x, heights(it)))).collect();
+        keep(&mut curve.line, &places);
+        let places: Vec<_> = curve.area.iter().map(|it: &Area| place((it.x, it.y))).collect();
+        keep(&mut curve.area, &places);
     }
 }
 
 /// Keeps the corners of many points, by their places.
-fn keep<T>(points: &mut Vec<T>, places: Vec<(f64, [f64; 2])>) {
+fn keep<T>(points: &mut Vec<T>, places: &[(f64, [f64; 2])]) {
     if points.len() > MANY {
         let mut kept = vec![false; points.len()];
         // A point without a height is a gap: the points about it are ends.
         let is_shown = |k: usize| places[k].1.iter().all(|end| end.is_finite());
         let all: Vec<usize> = (0..places.len()).collect();
         for run in all.chunk_by(|&a, &b| is_shown(a) == is_shown(b)) {
-            corners(&places, [run[0], run[run.len() - 1]], &mut kept);
+            corners(places, [run[0], run[run.len() - 1]], &mut kept);
         }
         let mut kept = kept.into_iter();
         points.retain(|_| kept.next() == Some(true));
