@@ -198,9 +198,9 @@ fn a_long_file_says_why() {
 }
 
 /// Product lines of the harness, its packages and the build script included: all lines of formatted Rust but modules of tests, integration tests,
-/// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised: 700 for the
-/// integrator `bidirectional`, its light image, and its table of strategies.
-const MOST_PRODUCT_LINES: usize = 30_900;
+/// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised: 1,200 for the
+/// integrator `bidirectional`, its light image, its table of strategies, and its report.
+const MOST_PRODUCT_LINES: usize = 31_400;
 
 #[test]
 fn the_harness_does_not_grow() {

@@ -35,8 +35,8 @@ pub(crate) use painting::{Painting, moments};
 use passes::{EarlyEnd, End};
 use points::{points, reference, within_budget};
 use rendering::Rendering;
-pub(crate) use statistics::Moments;
 use statistics::Statistics;
+pub(crate) use statistics::{Moments, StrategyShare};
 use std::io::{Read, Write};
 use std::sync::OnceLock;
 

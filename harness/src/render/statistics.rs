@@ -104,7 +104,7 @@ pub(super) struct VirtualLights {
 
 /// Light that one strategy found, weighted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct StrategyShare {
+pub(crate) struct StrategyShare {
     /// Vertices from a light; null for all strategies of longer paths than those that are told.
     pub s: Option<u32>,
     /// Vertices from the camera.
@@ -292,7 +292,7 @@ impl Moments {
     }
 
     /// Light by the strategies that found some.
-    fn strategies(&self) -> Vec<StrategyShare> {
+    pub(crate) fn strategies(&self) -> Vec<StrategyShare> {
         let total: f64 = self.strategies.iter().map(|found| found.mean).sum();
         let told = Tally::strategies().zip(&self.strategies).filter(|(_, found)| found.mean != 0.0);
         told.map(|(strategy, found)| StrategyShare {

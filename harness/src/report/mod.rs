@@ -1,9 +1,11 @@
 //! Reports: named studies that are measured, made into documents, and written as folders.
 
+mod bidirectional;
 pub(crate) mod command;
 mod estimators;
 mod folder;
 mod free_flight;
+mod laws;
 mod looks;
 mod measured;
 pub(crate) mod options;

@@ -1,7 +1,9 @@
 //! The reports that there are, by name.
 
 use super::run::{Finished, Run};
-use super::{estimators, free_flight, particle_tracing, single_scattering, standard, virtual_lights};
+use super::{
+    bidirectional, estimators, free_flight, particle_tracing, single_scattering, standard, virtual_lights,
+};
 use crate::Failure;
 
 /// A report that can be asked for.
@@ -19,7 +21,7 @@ pub(crate) struct ReportKind {
 }
 
 /// All reports; the first is the default.
-pub(crate) const REPORTS: [ReportKind; 6] = [
+pub(crate) const REPORTS: [ReportKind; 7] = [
     ReportKind {
         name: "standard",
         about: "transmittance estimators against their closed forms",
@@ -54,6 +56,13 @@ pub(crate) const REPORTS: [ReportKind; 6] = [
         takes_volume: false,
         takes: ["3.6 min", "24 s"],
         study: |run| Finished::of(virtual_lights::document(run)?),
+    },
+    ReportKind {
+        name: "bidirectional",
+        about: "paths joined from both ends: gain over path tracing, strategies, a point light in haze, weights",
+        takes_volume: false,
+        takes: ["> 1.5 min", "4 s"],
+        study: |run| Finished::of(bidirectional::document(run)?),
     },
     ReportKind {
         name: "estimators",

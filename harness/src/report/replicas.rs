@@ -4,12 +4,12 @@ use super::measured::{Measured, mean_and_error};
 use crate::Failure;
 use crate::field::MediumLibrary;
 use crate::plan::{ScenePlan, Spectra};
-use crate::render::{Moments, moments};
+use crate::render::{Moments, StrategyShare, moments};
 use crate::spec::{SceneOverrides, SceneSpec};
 use fairflight_document::{self as document, Pixels};
 use fairflight_scene::EnvironmentMap;
 use fairflight_sources::named_seed;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// A scene of a report: the JSON that `harness render` takes, and perhaps a map that lights it.
 #[derive(Clone, Debug)]
@@ -23,6 +23,22 @@ pub(super) struct Subject {
 impl Subject {
     pub(super) fn new(scene: Value) -> Self {
         Self { scene, map: None }
+    }
+
+    /// The scene of this text, without colours.
+    pub(super) fn gray(text: &str, resolution: [u32; 2]) -> Result<Self, Failure> {
+        let mut scene: Value = serde_json::from_str(text)
+            .map_err(|error| Failure::refused(format!("a scene of the report: {error}")))?;
+        for surface in scene["surfaces"].as_array_mut().into_iter().flatten() {
+            // Smooth surfaces have none, and must not get one.
+            let Some(reflectance) = surface["material"].get_mut("reflectance") else { continue };
+            if let Some(rgb) = reflectance.as_array() {
+                let sum: f64 = rgb.iter().filter_map(Value::as_f64).sum();
+                *reflectance = json!(sum / rgb.len() as f64);
+            }
+        }
+        scene["camera"]["resolution"] = json!(resolution);
+        Ok(Self::new(scene))
     }
 
     /// The same scene with this value at a path of keys.
@@ -94,6 +110,11 @@ impl Picture {
     /// The mean radiance of each pixel, row by row from the top.
     pub(super) fn means(&self) -> &[[f64; 3]] {
         self.moments.means()
+    }
+
+    /// Light by strategy, where the integrator has some.
+    pub(super) fn strategies(&self) -> Vec<StrategyShare> {
+        self.moments.strategies()
     }
 
     /// The same of a gray scene.

@@ -102,6 +102,16 @@ fn the_report_on_virtual_point_lights_keeps_the_expectation() {
 }
 
 #[test]
+fn the_report_on_bidirectional_path_tracing_finds_its_gain_and_no_broken_law() {
+    let (results, ledger) = document("bidirectional", "2");
+    let [a1, l1, r5] = &ledger[..] else { panic!("{ledger:?}") };
+    assert_eq!([a1, l1, r5].map(|row| row[0].as_str()), ["A1", "L1", "R5"]);
+    assert_eq!([&a1[1], &r5[1]], ["holds", "holds"], "{a1:?}");
+    assert_ne!(l1[1], "holds_under", "{l1:?}");
+    assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
+}
+
+#[test]
 fn what_cannot_be_written_is_said_before_anything_is_measured() {
     let parent = tempfile::tempdir().expect("a temporary folder");
     let file = parent.path().join("file");

@@ -169,7 +169,6 @@ impl Check {
                 | Law::FreeFlight
                 | Law::Phase
                 | Law::Radiance
-                | Law::Pair
                 | Law::Adjoint
                 | Law::Compensation
                 | Law::Energy,

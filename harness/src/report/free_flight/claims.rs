@@ -1,15 +1,15 @@
 //! R1, R2 and R3 of the ledger, and the findings of the report.
 
-use super::laws::Laws;
 use super::splitting::Splitting;
 use super::wavelengths::Wavelengths;
+use crate::report::laws::Laws;
 use fairflight_document::{Claim, ClaimVerdict};
 
 /// R1: algorithm 1 samples the exact density in any bounded medium.
 ///
 /// Criterion: every law of a Woodcock sampler holds, and each would have shown a relative bias of a tenth.
 pub(super) fn r1(laws: &Laws) -> Claim {
-    let woodcock: Vec<_> = laws.results.iter().filter(|(id, _)| id.contains("woodcock")).collect();
+    let woodcock: Vec<_> = laws.0.iter().filter(|(id, _)| id.contains("woodcock")).collect();
     let failed = woodcock.iter().filter(|(_, result)| result.holds == Some(false)).count();
     let held = woodcock.iter().filter(|(_, result)| result.holds == Some(true)).count();
     let flights: u64 = woodcock.iter().map(|(_, result)| result.samples).sum();
@@ -118,13 +118,13 @@ pub(super) fn r3(wavelengths: &Wavelengths) -> Claim {
 
 /// The findings, in words.
 pub(super) fn summary(laws: &Laws, splitting: &Splitting, wavelengths: &Wavelengths) -> Vec<String> {
-    let held = laws.results.iter().filter(|(_, result)| result.holds == Some(true)).count();
+    let held = laws.0.iter().filter(|(_, result)| result.holds == Some(true)).count();
     let first = &splitting.points[0];
     let last = &splitting.points[splitting.points.len() - 1];
     let gain = |point: &super::splitting::Point| point.independent.value / point.equidistant.value;
     let tested = wavelengths.points.iter().filter(|point| point.verdict.variance_p.is_some()).count();
     vec![
-        format!("{held} of {} laws of free flight hold.", laws.results.len()),
+        format!("{held} of {} laws of free flight hold.", laws.0.len()),
         format!(
             "Equidistant starts lower the noise of algorithm 2 by a factor of {:.2} in a homogeneous medium and {:.2} in thin sheets \
              (majorant {:.1} times the mean).",

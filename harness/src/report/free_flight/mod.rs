@@ -8,13 +8,14 @@ mod starts;
 mod wavelengths;
 
 use crate::Failure;
+use crate::report::laws::Laws;
 use crate::report::run::Run;
 use fairflight_document::Document;
 
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
-    run.expect(laws::steps() + distances::steps() + wavelengths::steps() + splitting::steps());
-    let laws = laws::study(run);
+    run.expect(Laws::steps(laws::CHECKS) + distances::steps() + wavelengths::steps() + splitting::steps());
+    let laws = Laws::study(run, laws::CHECKS);
     let distances = distances::study(run)?;
     let starts = starts::section(run);
     let splitting = splitting::study(run)?;
@@ -22,8 +23,8 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     Ok(Document {
         claims: vec![claims::r1(&laws), claims::r2(&splitting), claims::r3(&wavelengths)],
         summary: claims::summary(&laws, &splitting, &wavelengths),
-        unsound: laws.part.unsound.into_iter().chain(wavelengths.part.unsound).collect(),
-        sections: vec![laws.part.section, distances, starts, splitting.section, wavelengths.part.section],
+        unsound: laws.unsound().chain(wavelengths.part.unsound).collect(),
+        sections: vec![laws::section(&laws), distances, starts, splitting.section, wavelengths.part.section],
         hero: Some("splitting-error".to_owned()),
         ..run.document("Free flight, line integrals, wavelengths")
     })

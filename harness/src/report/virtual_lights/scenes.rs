@@ -20,31 +20,16 @@ pub(super) fn side(run: &Run<'_>) -> u32 {
 /// The bound that all figures use where nothing else is said \[1/length²\].
 pub(super) const BOUND: f64 = 20.0;
 
-fn gray(text: &str, resolution: [u32; 2]) -> Result<Subject, Failure> {
-    let mut scene: Value = serde_json::from_str(text)
-        .map_err(|error| Failure::refused(format!("a scene of the report: {error}")))?;
-    for surface in scene["surfaces"].as_array_mut().into_iter().flatten() {
-        // Smooth surfaces have none, and must not get one.
-        let Some(reflectance) = surface["material"].get_mut("reflectance") else { continue };
-        if let Some(rgb) = reflectance.as_array() {
-            let sum: f64 = rgb.iter().filter_map(Value::as_f64).sum();
-            *reflectance = json!(sum / rgb.len() as f64);
-        }
-    }
-    scene["camera"]["resolution"] = json!(resolution);
-    Ok(Subject::new(scene))
-}
-
 /// The room with smoke, square. The camera looks a little down, so that the lamp is not in the picture: where its edges fall within a
 /// pixel they would be most of the error of a method with few camera rays.
 pub(super) fn smoke_room(resolution: u32) -> Result<Subject, Failure> {
-    let room = gray(SMOKE_ROOM, [resolution; 2])?;
+    let room = Subject::gray(SMOKE_ROOM, [resolution; 2])?;
     Ok(room.with("camera.vertical_fov_degrees", 34.0).with("camera.look_at", json!([0, -0.3, 0])))
 }
 
 /// One line of pixels through the middle of the room.
 pub(super) fn scanline(columns: u32) -> Result<Subject, Failure> {
-    let subject = gray(SMOKE_ROOM, [columns, 1])?;
+    let subject = Subject::gray(SMOKE_ROOM, [columns, 1])?;
     let height = subject.scene["camera"]["vertical_fov_degrees"].as_f64().unwrap_or(50.0);
     // As wide as the square image; a row is one part of so many of its height.
     let half = (0.5 * height).to_radians().tan() / f64::from(columns);
@@ -53,12 +38,12 @@ pub(super) fn scanline(columns: u32) -> Result<Subject, Failure> {
 
 /// Spheres in haze, square, with this mean cosine of the phase function.
 pub(super) fn haze(resolution: u32, g: f64) -> Result<Subject, Failure> {
-    Ok(gray(HAZE_SPHERES, [resolution; 2])?.with("medium.phase.g", g))
+    Ok(Subject::gray(HAZE_SPHERES, [resolution; 2])?.with("medium.phase.g", g))
 }
 
 /// The cloud, square.
 pub(super) fn cloud(resolution: u32) -> Result<Subject, Failure> {
-    gray(LIT_CLOUD, [resolution; 2])
+    Subject::gray(LIT_CLOUD, [resolution; 2])
 }
 
 /// A screen of no thickness in even smoke, with the lamp on one side of it: light that passes it shows on the other side.
