@@ -185,14 +185,11 @@ impl PathTracerPlan {
         }
     }
 
-    fn among<'s, W>(
+    fn among<'s, W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's>(
         &'s self,
         world: World<'s, W>,
         unlawful: &'s Cell<Option<Unlawful>>,
-    ) -> AnyIntegrator<'s, W::Spectrum>
-    where
-        W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's,
-    {
+    ) -> AnyIntegrator<'s, W::Spectrum> {
         let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let tracer = PathTracer::new(world, walk.walk(), shadow.worker(unlawful), *heuristic);
         counting(tracer.with_max_vertices(self.max_vertices), |tracer| Counts::cut(tracer.truncated()))
@@ -215,15 +212,12 @@ impl VplPlan {
         }
     }
 
-    fn among<'s, W>(
+    fn among<'s, W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's>(
         &'s self,
         world: World<'s, W>,
         stage: Stage<'s, W::Spectrum>,
         unlawful: &'s Cell<Option<Unlawful>>,
-    ) -> AnyIntegrator<'s, W::Spectrum>
-    where
-        W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's,
-    {
+    ) -> AnyIntegrator<'s, W::Spectrum> {
         let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let (component, term) = match self.component {
             ComponentSpec::All => (Component::All, Term::Bounded(stage.bound)),
