@@ -42,10 +42,10 @@ impl Stretch {
         Self { low, high, scale }
     }
 
-    /// The same stretch, whose ends are those of whole decades, or round numbers.
+    /// The same stretch, whose ends are those of whole decades, or round numbers. A decade more would leave half of two empty.
     pub(crate) fn rounded(self) -> Self {
         let step = match self.scale {
-            Scale::Logarithmic if self.high - self.low > 1.2 => 1.0,
+            Scale::Logarithmic if self.high - self.low > 2.2 => 1.0,
             Scale::Logarithmic => return self,
             Scale::Linear => nice_step((self.high - self.low) / 6.0),
         };
@@ -146,6 +146,8 @@ mod tests {
         assert!((stretch.high - 3.0 - 0.36).abs() < 1e-9 && (stretch.low + 9.0 + 0.36).abs() < 1e-9);
         let rounded = stretch.rounded();
         assert_eq!((rounded.low, rounded.high), (-9.0, 3.0));
+        let short = Stretch::of(&logarithmic, [1.1, 19.0]);
+        assert_eq!(short.rounded(), short);
         for values in [&[][..], &[3.0], &[0.0]] {
             for axis in [&logarithmic, &Axis::linear("")] {
                 let stretch = Stretch::of(axis, values.iter().copied()).rounded();
