@@ -1,6 +1,6 @@
 //! Every hard case is right, or refused where it must be.
 
-use fairflight_catalogue::{Law, hard_cases};
+use fairflight_catalogue::{Law, ROWS, hard_cases};
 use fairflight_laws::Run;
 use fairflight_tests::{SEED, run_checks};
 
@@ -12,10 +12,10 @@ fn every_hard_case_passes() {
 }
 
 #[test]
-fn the_rows_of_what_is_built_are_all_there() {
+fn every_row_has_a_case() {
     let mut rows: Vec<u32> = hard_cases().iter().map(|case| case.number).collect();
     rows.dedup();
-    assert_eq!(rows, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20, 21, 22]);
+    assert_eq!(rows, ROWS.map(|(number, _)| number));
 }
 
 #[test]
