@@ -61,7 +61,7 @@ pub(crate) const REPORTS: [ReportKind; 7] = [
         name: "bidirectional",
         about: "paths joined from both ends: gain over path tracing, strategies, a point light in haze, weights",
         takes_volume: false,
-        takes: ["> 1.5 min", "4 s"],
+        takes: ["3.2 min", "9 s"],
         study: |run| Finished::of(bidirectional::document(run)?),
     },
     ReportKind {
