@@ -16,7 +16,7 @@ pub fn parse(text: &str) -> Result<Value, Failure> {
     serde_json::from_str::<Strict>(text).map(|strict| strict.0).map_err(|error| {
         let message = error.to_string();
         Failure::refused(match message.strip_prefix("trailing characters") {
-            Some(place) => format!("there is more text after the end of the JSON,{place}"),
+            Some(place) => format!("not JSON alone: there is more text after the end of the JSON,{place}"),
             None => format!("not JSON: {message}"),
         })
     })
