@@ -11,7 +11,7 @@ use fairflight_sources::Seeded;
 use fairflight_transmittance::Regular;
 use glam::DVec3;
 
-/// All heuristics.
+/// Heuristics whose weights are checked.
 pub const HEURISTICS: [Heuristic; 3] = [Heuristic::Balance, Heuristic::Power, Heuristic::Maximum];
 
 /// Distances of weights from what they should be.

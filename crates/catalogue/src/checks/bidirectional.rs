@@ -25,7 +25,7 @@ const GRANTED: f64 = 1e-11;
 /// Samples of an exact check, whose paths are drawn: the law holds for each.
 const DRAWN: u32 = 100;
 
-/// All.
+/// Checks of weights, pairs, expectations and the light image.
 pub(super) fn checks() -> Vec<Check> {
     let mut checks = partitions();
     checks.push(paired("lamps and a mirror", mixed, &[(2, 1, 2), (3, 1, 3)], 130_000));

@@ -42,7 +42,7 @@ pub(super) struct Entry {
     images: Replicas,
 }
 
-/// All methods in one scene.
+/// Measurements of one scene: error and CPU time of each method.
 pub(super) struct Compared {
     pub(super) scene: &'static Scene,
     pub(super) entries: Vec<Entry>,

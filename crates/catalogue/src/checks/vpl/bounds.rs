@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 const DRAWS: u64 = 50_000;
 const SETS: u64 = 500;
 
-/// All.
+/// Checks of bounds.
 pub(super) fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
     for (steps, name) in [(Some(1), "one step"), (None, "all steps")] {

@@ -22,7 +22,7 @@ const MORE: u64 = 900_000;
 const TERMINATING: Version = Version::Terminating;
 const OTHER: Version = Version::NonTerminating;
 
-/// All.
+/// Checks of the ledger.
 pub(super) fn checks() -> Vec<Check> {
     // Both sides of a lamp of 0.49 and radiance 5.
     let lamp = 2.0 * PI * 0.49 * 5.0;

@@ -25,7 +25,7 @@ const HEURISTICS: [(Heuristic, &str); 3] =
 const WITHOUT_VARIANCE: u64 = 2_000;
 const WEIGHTED: u64 = 600_000;
 
-/// All.
+/// Checks of the tracer of light paths.
 pub(super) fn checks() -> Vec<Check> {
     let eq21 = || open(AnalyticCosine::new(2.0).expect(LAWFUL));
     let mut checks = vec![
