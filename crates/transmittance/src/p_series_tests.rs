@@ -197,6 +197,7 @@ fn a_vacuum_and_what_is_no_pivot() {
         let estimator = PSeries::with_majorant(version, &vacuum).unwrap();
         agrees(&vacuum, &estimator, 100, &mut Seeded::new(1));
         assert_eq!(estimator.admits(&vacuum, 0.0, 0.1), version == Cumulative);
+        assert_eq!(PSeries::new(version, 1.25).unwrap().pivot(), 1.25);
         assert_eq!(PSeries::new(version, -1.0), Err(PivotError::Negative(-1.0)));
         assert_eq!(PSeries::new(version, f64::INFINITY), Err(PivotError::NotFinite(f64::INFINITY)));
     }

@@ -204,4 +204,28 @@ mod tests {
         assert_relative_eq!(theory.relative_central[0], moment(2, mean), max_relative = 1e-11);
         assert_relative_eq!(theory.relative_central[2], moment(4, mean), max_relative = 1e-11);
     }
+
+    /// In a medium so dense that exp(tau − X) is taken in units of the greatest, the law is still that of its two values.
+    #[test]
+    fn great_exponents_have_the_moments_of_their_sums() {
+        // One look-up meets 250 with probability 1/4, nothing otherwise.
+        let field = PiecewiseConstant::new(vec![0.0, 0.25, 1.0], vec![250.0, 0.0]).unwrap();
+        let marching = RayMarching::new(1, Offset::Jittered).unwrap();
+        for tau in [62.5_f64, 90.0] {
+            let theory = marching.theory(&mut RayQuadrature::new(field.clone(), &[]), tau, Tolerance::TIGHT);
+            let mean = 0.75 * tau.exp();
+            assert_relative_eq!(theory.relative_mean, mean, max_relative = 1e-12);
+            // Of a coin: the second to the fourth central moment.
+            let coin = [3.0 / 16.0, -6.0 / 64.0, 21.0 / 256.0];
+            for (i, expected) in coin.into_iter().enumerate() {
+                let expected = expected * (tau * (i as f64 + 2.0)).exp();
+                assert_relative_eq!(theory.relative_central[i], expected, max_relative = 1e-11);
+            }
+            assert_relative_eq!(
+                theory.log_relative_variance,
+                (3.0_f64 / 16.0).ln() + 2.0 * tau,
+                max_relative = 1e-12
+            );
+        }
+    }
 }

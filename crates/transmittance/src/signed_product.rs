@@ -184,6 +184,14 @@ mod tests {
         }
         let back = product.times_exp(-5000.0 * 3.0_f64.ln());
         assert!((back - 1.0).abs() < 1e-11);
+        // By exponents of any size, also where only the product is beyond the range of numbers.
+        for (product, exponent) in [(600.0, -300.0), (-900.0, 450.0), (2.0, 3.0), (30.0, 600.0)] {
+            let found = SignedProduct::exp(product).times_exp(exponent);
+            assert!(
+                (found / f64::exp(product + exponent) - 1.0).abs() < 1e-12,
+                "{product} {exponent}: {found}"
+            );
+        }
     }
 
     #[test]

@@ -122,3 +122,25 @@ where
         Some(lookups_of_a_mixture(nodes, tolerance, &self.control, &self.sampling))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{constant, spectrum};
+
+    /// max |r_l| and max |1 − r_l| are not smooth on five lines of the plane of two ratios, and a function passes 0 on each of them alone.
+    #[test]
+    fn a_kink_is_found_on_each_line_where_two_sizes_agree() {
+        // Ratios are those of what is above the control, which may be below it.
+        let tracking = SpectralTracking::with_control(MaxScheme, constant(1.0), constant(1.0));
+        let zeros = |ratios: [f64; 2]| {
+            let field = spectrum(ratios.map(|r| 1.0 + r));
+            let field = Wavelength::new(&field, 0).unwrap();
+            tracking.kinks().iter().filter(|kink| kink(&field, 0.5, 1.0 + ratios[0]).abs() < 1e-12).count()
+        };
+        assert_eq!(zeros([0.3, 0.8]), 0);
+        for on_a_line in [[0.0, 0.8], [1.0, 0.8], [0.7, 0.7], [-0.7, 0.7], [0.6, 1.4]] {
+            assert_eq!(zeros(on_a_line), 1, "{on_a_line:?}");
+        }
+    }
+}

@@ -255,4 +255,19 @@ mod tests {
             assert!((variance - exact).abs() < 0.5 * left, "{most}: {variance} for {exact}, {left} left");
         }
     }
+
+    /// The law is that of the estimate, whatever unit its moments are taken in.
+    #[test]
+    fn the_unit_of_moments_does_not_matter() {
+        let moments: [f64; HIGHEST_MOMENT - 1] = [1.5, -0.2, 3.0, 0.0, 7.0, 1.0, 40.0];
+        let of = |log: f64, unit: f64| Scale { thickness: 90.0, log }.theory((moments, unit), 0.0, 1.0);
+        let plain = of(0.0, 3.0 * 9.0_f64.exp());
+        let scaled = of(9.0, 3.0);
+        for (a, b) in plain.relative_central.into_iter().zip(scaled.relative_central) {
+            assert!((a - b).abs() <= 1e-12 * a.abs(), "{a} {b}");
+        }
+        for theory in [plain, scaled] {
+            assert!((theory.log_relative_variance - theory.relative_central[0].ln()).abs() < 1e-12);
+        }
+    }
 }

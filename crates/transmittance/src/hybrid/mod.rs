@@ -306,4 +306,53 @@ mod tests {
         assert!(matches!(chosen(&experience, Hybrid::USUAL_BUDGET), Choice::Marching(_)));
         assert_eq!((experience.rays(), experience.pilots().len()), (18, 16));
     }
+
+    /// One candidate on a ray of length 20 like those remembered, which are a ramp's but for what the test says.
+    fn candidate(candidate: Candidate, change: impl Fn(usize, &mut Pilot)) -> (Option<Hybrid>, Experience) {
+        let good = of_a_ramp(1).pilots()[0];
+        let mut experience = Experience::default();
+        for i in 0..8 {
+            let mut pilot = good;
+            change(i, &mut pilot);
+            experience.observe(&pilot);
+        }
+        (Hybrid::of(candidate, &experience, (20.0, 20.0, teeth_for(20.0))), experience)
+    }
+
+    #[test]
+    fn a_comb_is_forecast_as_far_as_its_law_goes_and_has_the_roulette_of_its_segments() {
+        let matched = Candidate::Whole { fineness: 0, shape: CombShape::EndpointMatched };
+        let known = |variance: f64| candidate(matched, |_, pilot| pilot.matched[0] = variance).0.is_some();
+        assert_eq!([0.29, 0.31, 3.0].map(known), [true, false, false]);
+        let segments = teeth_for(20.0);
+        let variance = 0.05;
+        let (apart, _) = candidate(Candidate::Apart { fineness: 0 }, |_, pilot| pilot.apart[0] = variance);
+        let Some(Hybrid { choice: Choice::Marching(comb), .. }) = apart else {
+            panic!("a comb has a forecast")
+        };
+        assert_eq!(
+            (comb.segments(), comb.roulette()),
+            (segments, Roulette::tuned(variance / f64::from(segments)))
+        );
+    }
+
+    /// A comb is left when on one ray it would cost more than a quarter above jittered ratio tracking, and not before.
+    #[test]
+    fn a_comb_may_cost_a_quarter_more_on_one_ray() {
+        let matched = Candidate::Whole { fineness: 0, shape: CombShape::EndpointMatched };
+        let worst = |i: usize, pilot: &mut Pilot| pilot.matched[0] = if i == 3 { 0.01 } else { 1e-9 };
+        let (comb, _) = candidate(matched, worst);
+        let comb = comb.expect("a comb has a forecast");
+        let Choice::Marching(estimator) = comb.choice else { panic!("it is one") };
+        let price = predicted_relative_variance(0.01, estimator.roulette(), 1) * comb.forecast.lookups;
+        for (times, safe) in [(1.2, true), (1.3, false)] {
+            // What jittered ratio tracking costs on that ray, if one of its estimates takes seven look-ups.
+            let (_, experience) = candidate(matched, |i, pilot| {
+                worst(i, pilot);
+                pilot.jittered[0] = price / times / 7.0;
+            });
+            let jittered = Candidate::Jittered { index: 0 };
+            assert_eq!(comb.is_safe((matched, jittered), &experience, 20.0, 7.0), safe, "{times}");
+        }
+    }
 }
