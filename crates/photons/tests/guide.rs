@@ -3,7 +3,10 @@
 #[path = "../../paths/tests/common/mod.rs"]
 mod common;
 
-use common::{Made, Scene, against, along, ball, courtyard, difference, diffuse, furnace, rectangle, volume};
+use common::{
+    Made, Scene, against, allocations, along, ball, courtyard, difference, diffuse, furnace, rectangle,
+    volume,
+};
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, Homogeneous, Line, LineThickness};
@@ -265,12 +268,7 @@ fn a_sample_allocates_nothing() {
     let scene = courtyard();
     let map = traced(&scene, 2000, 1);
     let mut tracer = scene.plain().with_extension(Guided::new(&map, options(0.5)));
-    let mut source = Seeded::new(3);
-    let allocated = allocation_counter::measure(|| {
-        let sum: f64 = (0..500).map(|_| tracer.radiance(&scene.eye, &mut source)).sum();
-        assert!(sum > 0.0);
-    });
-    assert_eq!(allocated.count_total, 0);
+    assert_eq!(allocations(&scene.eye, &mut tracer), 0);
 }
 
 #[test]

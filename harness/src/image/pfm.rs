@@ -113,21 +113,23 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_told() {
-        let told = |bytes: &[u8], words: &str| {
+        let files: [(&[u8], &str); 12] = [
+            (b"", "neither PF nor Pf"),
+            (b"P6\n1 1\n255\n", "neither PF nor Pf"),
+            (b"PF\n1\n", "ends before its height"),
+            (b"PF\n-1 1\n-1\n", "width is \"-1\""),
+            (b"PF\n0 1\n-1\n", "0 x 1 pixels"),
+            (b"PF\n1 1\n0\n", "scale is \"0\""),
+            (b"PF\n1 1\nnan\n", "scale is \"nan\""),
+            (b"PF\n1 1\n-1\nabc", "take 12 bytes after it, but 3 are there"),
+            (b"PF\n1 1\n-1\n0123456789abcdef", "12 bytes after it, but 16"),
+            (b"PF\n16384 16384\n-1\n", "3221225472 bytes after it, but 0"),
+            (b"PF\n4294967296 4294967296\n-1\n", "allowed are 1 to"),
+            (b"PF\n1000000 1000000\n-1\n", "allowed are 1 to"),
+        ];
+        for (bytes, words) in files {
             let error = decode(bytes).unwrap_err().to_string();
             assert!(error.contains(words), "no {words:?} in: {error}");
-        };
-        told(b"", "neither PF nor Pf");
-        told(b"P6\n1 1\n255\n", "neither PF nor Pf");
-        told(b"PF\n1\n", "ends before its height");
-        told(b"PF\n-1 1\n-1\n", "width is \"-1\"");
-        told(b"PF\n0 1\n-1\n", "0 x 1 pixels");
-        told(b"PF\n1 1\n0\n", "scale is \"0\"");
-        told(b"PF\n1 1\nnan\n", "scale is \"nan\"");
-        told(b"PF\n1 1\n-1\nabc", "take 12 bytes after it, but 3 are there");
-        told(b"PF\n1 1\n-1\n0123456789abcdef", "12 bytes after it, but 16");
-        told(b"PF\n16384 16384\n-1\n", "3221225472 bytes after it, but 0");
-        told(b"PF\n4294967296 4294967296\n-1\n", "allowed are 1 to");
-        told(b"PF\n1000000 1000000\n-1\n", "allowed are 1 to");
+        }
     }
 }

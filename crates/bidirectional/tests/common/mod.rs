@@ -2,6 +2,9 @@
 
 #![allow(dead_code, unreachable_pub)] // Each test file uses its part.
 
+#[path = "../../../paths/tests/common/shapes.rs"]
+mod shapes;
+
 use fairflight_bidirectional::laws::{Path, Side, Weights};
 use fairflight_bidirectional::{
     Bidirectional, Found, Node, Strategy, Subpath, Walking, Weigh, WeightThickness,
@@ -11,13 +14,13 @@ use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, LineThickness, Medium};
 use fairflight_paths::transport::{Emitters, MadeOf, World};
 use fairflight_paths::{Heuristic, RayTransmittance, Uniform, Walk};
-use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{
-    Background, Camera, EnvironmentMap, Lights, Material, Shape, Source, Surface, Surfaces, Volume,
+    Background, Camera, EnvironmentMap, Lights, Material, Source, Surface, Surfaces, Volume,
 };
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::Regular;
 use glam::{DVec3, dvec3};
+pub use shapes::{ball, diffuse, rectangle};
 
 pub const ALL: [Heuristic; 3] = [Heuristic::Balance, Heuristic::Power, Heuristic::Maximum];
 
@@ -85,25 +88,6 @@ pub fn sample<M: Medium, T: RayTransmittance<M>, K: WeightThickness<M>>(
             each(found, &none, light);
         }
     }
-}
-
-pub fn diffuse(reflectance: f64) -> Material<f64> {
-    Material::Diffuse { reflectance }
-}
-
-pub fn rectangle(
-    corner: [f64; 3],
-    u: [f64; 3],
-    v: [f64; 3],
-    material: Material<f64>,
-    emission: f64,
-) -> Surface<f64> {
-    let shape = Rectangle::new(corner.into(), u.into(), v.into()).unwrap();
-    Surface::new(Shape::Rectangle(shape), material, emission).unwrap()
-}
-
-pub fn ball(center: DVec3, radius: f64, material: Material<f64>, emission: f64) -> Surface<f64> {
-    Surface::new(Shape::Sphere(Sphere::new(center, radius).unwrap()), material, emission).unwrap()
 }
 
 /// Floor, ceiling and three walls about the origin, 2 · 2 in size, open towards the camera.

@@ -2,19 +2,19 @@
 
 #![allow(dead_code, unreachable_pub)] // Each test file uses its part.
 
+mod shapes;
+
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, EmptySpace, Homogeneous, Line, LineThickness};
 use fairflight_paths::transport::{MadeOf, World};
 use fairflight_paths::{Heuristic, Integrator, PathTracer, Uniform, Walk};
-use fairflight_scene::surface::{Rectangle, Sphere};
-use fairflight_scene::{
-    Background, EnvironmentMap, Lights, Material, Shape, Source, Surface, Surfaces, Volume,
-};
+use fairflight_scene::{Background, EnvironmentMap, Lights, Material, Source, Surfaces, Volume};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::{Moments, Reference, Verdict, judge};
 use fairflight_transmittance::Regular;
 use glam::{DVec3, dvec3};
+pub use shapes::{ball, diffuse, rectangle};
 
 /// False alarm of one check; there are about forty.
 pub const ALPHA: f64 = 1e-4;
@@ -43,25 +43,6 @@ impl<M: LineThickness> Scene<M> {
     pub fn by(&self, heuristic: Heuristic) -> PathTracer<'_, Made<M>> {
         PathTracer::new(self.world(), self.walk, Regular, heuristic)
     }
-}
-
-pub fn diffuse(reflectance: f64) -> Material<f64> {
-    Material::Diffuse { reflectance }
-}
-
-pub fn rectangle(
-    corner: [f64; 3],
-    u: [f64; 3],
-    v: [f64; 3],
-    material: Material<f64>,
-    emission: f64,
-) -> Surface<f64> {
-    let shape = Rectangle::new(corner.into(), u.into(), v.into()).unwrap();
-    Surface::new(Shape::Rectangle(shape), material, emission).unwrap()
-}
-
-pub fn ball(center: DVec3, radius: f64, material: Material<f64>, emission: f64) -> Surface<f64> {
-    Surface::new(Shape::Sphere(Sphere::new(center, radius).unwrap()), material, emission).unwrap()
 }
 
 pub fn volume<M>(medium: M, albedo: f64, bounds: Bounds) -> Volume<M, HenyeyGreenstein, f64> {
@@ -143,6 +124,16 @@ pub fn difference(
 /// The radiance along the ray of a scene, by an integrator.
 pub fn along<'a>(line: &'a Line, integrator: &'a mut impl Integrator<f64>) -> impl FnMut(&mut Seeded) -> f64 {
     move |source| integrator.radiance(line, source)
+}
+
+/// Allocations of 500 samples, which are not all dark.
+pub fn allocations(line: &Line, integrator: &mut impl Integrator<f64>) -> u64 {
+    let mut source = Seeded::new(3);
+    let allocated = allocation_counter::measure(|| {
+        let sum: f64 = (0..500).map(|_| integrator.radiance(line, &mut source)).sum();
+        assert!(sum > 0.0);
+    });
+    allocated.count_total
 }
 
 /// The mean of an integrator along a ray against a closed form.
