@@ -5,8 +5,8 @@
 //! cargo run -p fairflight-tests --example verify_seeds -- verify-*.json
 //! ```
 //!
-//! Exit code 1 if a check raised an alarm or was not testable, or if a share is above what 0.01 allows (below it too for exact
-//! p-values).
+//! Exit code 1 if a check raised an alarm or was not testable, if a share is above what 0.01 allows (below it too for exact p-values), or
+//! if one p-value of one check is small on more seeds than chance explains.
 
 use fairflight_stats::Binomial;
 use serde_json::Value;
@@ -17,10 +17,10 @@ use std::process::ExitCode;
 /// The p-values that are counted lie below this.
 const SMALL: f64 = 0.01;
 
-/// A share is called off where its exact binomial p-value is below this: 95 % intervals, as they are reported.
+/// A share is called off where its binomial p-value is below this: 95 % intervals, as they are reported.
 const OFF: f64 = 0.05;
 
-/// p-values of one sort.
+/// p-values, and how many of them are small.
 #[derive(Clone, Copy, Default)]
 struct Count {
     all: u64,
@@ -32,15 +32,47 @@ impl Count {
         self.all += 1;
         self.small += u64::from(p < SMALL);
     }
+}
 
-    /// The counts of small ones that 0.01 allows at 95 %, and whether this one is among them: for exact p-values on both sides.
-    fn judge(self, is_exact: bool) -> (u64, u64, bool) {
-        let law = Binomial::new(self.all, SMALL).expect("a probability");
+/// p-values of one sort: of each check on each seed a count of its own.
+#[derive(Clone, Default)]
+struct Counts(Vec<Count>);
+
+impl Counts {
+    /// Takes the p-values of the next check.
+    fn observe(&mut self, p_values: impl Iterator<Item = f64>) {
+        let mut count = Count::default();
+        p_values.for_each(|p| count.observe(p));
+        self.0.push(count);
+    }
+
+    fn total(&self) -> Count {
+        let sum = |of: fn(&Count) -> u64| self.0.iter().map(of).sum();
+        Count { all: sum(|count| count.all), small: sum(|count| count.small) }
+    }
+
+    /// Variance of the number of small ones over that of independent p-values, at least 1: a check's p-values come from the same draws (who
+    /// collides does not escape), so that they are small together.
+    fn design_effect(&self) -> f64 {
+        let Count { all, small } = self.total();
+        let share = small as f64 / all as f64;
+        let deviation = |count: &Count| count.small as f64 - share * count.all as f64;
+        let variance: f64 = self.0.iter().map(|count| deviation(count).powi(2)).sum();
+        (variance / (all as f64 * SMALL * (1.0 - SMALL))).max(1.0)
+    }
+
+    /// The counts of small ones that 0.01 allows at 95 %, and whether this one is among them: for exact p-values on both sides. The binomial
+    /// interval, widened by the root of the design effect.
+    fn judge(&self, is_exact: bool) -> (f64, f64, bool) {
+        let Count { all, small } = self.total();
+        let law = Binomial::new(all, SMALL).expect("a probability");
         let within = |k: u64| law.two_sided_p_value(k) > OFF;
-        let mean = (self.all as f64 * SMALL) as u64;
-        let low = (0..=mean).find(|&k| within(k)).unwrap_or(mean);
-        let high = (mean..=self.all).take_while(|&k| within(k)).last().unwrap_or(mean);
-        (low, high, self.small <= high && (!is_exact || self.small >= low))
+        let mean = all as f64 * SMALL;
+        let low = (0..=mean as u64).find(|&k| within(k)).unwrap_or(mean as u64) as f64;
+        let high = (mean as u64..=all).take_while(|&k| within(k)).last().unwrap_or(mean as u64) as f64;
+        let wider = self.design_effect().sqrt();
+        let (low, high) = ((mean - wider * (mean - low)).max(0.0), mean + wider * (high - mean));
+        (low, high, small as f64 <= high && (!is_exact || small as f64 >= low))
     }
 }
 
@@ -79,7 +111,8 @@ fn summarise(files: &[String], out: &mut impl Write) -> io::Result<bool> {
     let (mut alarms, mut untestable, mut runs, mut checks) = (Vec::new(), Vec::new(), 0, 0);
     let mut weakest: BTreeMap<String, f64> = BTreeMap::new();
     let mut shares: BTreeMap<String, Shares> = BTreeMap::new();
-    let mut counts: BTreeMap<(String, String), Count> = BTreeMap::new();
+    let mut counts: BTreeMap<(String, String), Counts> = BTreeMap::new();
+    let mut repeated: BTreeMap<String, Count> = BTreeMap::new();
     for file in files {
         let text = std::fs::read_to_string(file).unwrap_or_else(|error| panic!("{file}: {error}"));
         let run: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"));
@@ -101,13 +134,18 @@ fn summarise(files: &[String], out: &mut impl Write) -> io::Result<bool> {
             if let Some(share) = check["normal_share"].as_f64().filter(|&share| share > 0.0) {
                 shares.entry(id.clone()).or_default().0.push(share.ln());
             }
+            let mut found: BTreeMap<(String, String), Vec<f64>> = BTreeMap::new();
             for p_value in check["p_values"].as_array().into_iter().flatten() {
                 let level = p_value["level"].as_str().unwrap_or_default().to_owned();
                 let of = p_value["of"].as_str().unwrap_or_default();
-                let of = of.rsplit(": ").next().unwrap_or(of).to_owned();
                 let Some(p) = p_value["p"].as_f64() else { panic!("{file}: {id}: no p-value") };
-                counts.entry((level.clone(), of)).or_default().observe(p);
-                counts.entry((level, "all".to_owned())).or_default().observe(p);
+                repeated.entry(format!("{id}: {of}")).or_default().observe(p);
+                let of = of.rsplit(": ").next().unwrap_or(of).to_owned();
+                found.entry((level.clone(), of)).or_default().push(p);
+                found.entry((level, "all".to_owned())).or_default().push(p);
+            }
+            for (sort, p_values) in found {
+                counts.entry(sort).or_default().observe(p_values.into_iter());
             }
         }
     }
@@ -131,21 +169,30 @@ fn summarise(files: &[String], out: &mut impl Write) -> io::Result<bool> {
     for (share, id) in greatest(shares.iter().map(|(id, shares)| (shares.greatest(), id))) {
         writeln!(out, "  {share:.3}  {:6.1}  {id}", shares[id].margin())?;
     }
+    let mut off = false;
+    writeln!(out, "\nmost often below {SMALL} (chance of as many, times the number of p-values; seeds):")?;
+    let chances = repeated.iter().filter(|(_, count)| count.small > 0).map(|(of, count)| {
+        let law = Binomial::new(count.all, SMALL).expect("a probability");
+        (-law.upper_tail(count.small) * repeated.len() as f64, of)
+    });
+    for (chance, of) in greatest(chances) {
+        off |= -chance < OFF;
+        writeln!(out, "  {:.3}  {} of {}  {of}", -chance, repeated[of].small, repeated[of].all)?;
+    }
     writeln!(
         out,
-        "\n| level | of | p-values | below {SMALL} | share | 95 % of {SMALL} |\n|---|---|---|---|---|---|"
+        "\n| level | of | p-values | below {SMALL} | share | design effect | 95 % of {SMALL} |\n|---|---|---|---|---|---|---|"
     )?;
-    let mut off = false;
     for ((level, of), count) in &counts {
         let (low, high, is_within) = count.judge(level == "exact");
         // Kinds of quantity are told; their union is judged.
         off |= of == "all" && !is_within && level != "studentised";
-        let share = count.small as f64 / count.all as f64;
+        let Count { all, small } = count.total();
+        let (share, effect) = (small as f64 / all as f64, count.design_effect());
         let mark = if is_within { "" } else { " *" };
         writeln!(
             out,
-            "| {level} | {of} | {} | {} | {share:.4}{mark} | {low} to {high} |",
-            count.all, count.small
+            "| {level} | {of} | {all} | {small} | {share:.4}{mark} | {effect:.2} | {low:.0} to {high:.0} |"
         )?;
     }
     Ok(alarms.is_empty() && untestable.is_empty() && !off)
@@ -162,6 +209,26 @@ fn greatest<'a>(values: impl Iterator<Item = (f64, &'a String)>) -> Vec<(f64, &'
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn p_values_of_the_same_draws_widen_the_interval() {
+        // One small one in each of the first checks, or all of a few checks: as many, and no alarm only where they come together.
+        let of = |checks: &[(usize, f64)]| {
+            let mut counts = Counts::default();
+            for &(times, p) in checks {
+                (0..times).for_each(|_| counts.observe([p; 10].into_iter()));
+            }
+            counts
+        };
+        let mut apart = of(&[(837, 0.5)]);
+        (0..163)
+            .for_each(|_| apart.observe([0.001, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5].into_iter()));
+        let together = of(&[(16, 0.001), (984, 0.5)]);
+        assert_eq!((apart.total().small, together.total().small), (163, 160));
+        assert!(!apart.judge(true).2 && together.judge(true).2);
+        assert!((together.design_effect() - 16.0 * 10.0 * 9.84 / 99.0).abs() < 0.2);
+        assert!(!of(&[(60, 0.001), (940, 0.5)]).judge(true).2);
+    }
 
     #[test]
     fn a_closed_pipe_is_no_panic() {
