@@ -105,7 +105,7 @@ END {
     print "Drawn by `tests/mutants/run draw`: the mutants whose names come first in an order by a salted hash, for each crate in proportion to how many it"
     print "has and no fewer than 25. Of media: phase functions, quadrature and profiles. Implementations of `Display` and `Debug` and the files"
     print "`error.rs` are left out: they are words (decided before the first run). A mutant that does not compile is not viable; one whose tests"
-    print "need ten times their CPU time is noticed, as endless. Equivalent mutants are not counted, and listed with the reason."
+    print "need ten times their CPU time is noticed, as endless. Equivalent mutants are not counted, and listed with the reason. The score is of the tests as they stand: what survived\nearlier ones (eleven of the last 61) got a test from the law and met it."
     print ""
     print "| crate | drawn | run | not viable | equivalent | own tests | laws | tests/ | endless | missed | score |"
     print "|---|---|---|---|---|---|---|---|---|---|---|"
