@@ -8,7 +8,7 @@ use crate::reader::Listed;
 use crate::reader::kind::{Key, object_schema, plain};
 use crate::reader::rule::{Ruled, vector_schema};
 use crate::report::registry::REPORTS;
-use crate::spec::{ColourSpec, IntegratorSpec, LightSpec, MaterialSpec, PhaseSpec, ShapeSpec};
+use crate::spec::{ColourSpec, ExtensionSpec, IntegratorSpec, LightSpec, MaterialSpec, PhaseSpec, ShapeSpec};
 use crate::{DONE, Failure, print};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
@@ -34,6 +34,7 @@ pub fn things() -> Vec<Things> {
         things("estimator", "estimators", EstimatorSpec::listed()),
         things("control", "controls", ControlSpec::listed()),
         things("integrator", "integrators", IntegratorSpec::listed()),
+        things("extension", "extensions", ExtensionSpec::listed()),
         things("phase", "phases", PhaseSpec::listed()),
         things("light", "lights", LightSpec::listed()),
         things("surface", "surfaces", surfaces()),

@@ -67,7 +67,7 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("metropolis", &["paths"]),
     ("compensation", &["vpl"]),
     ("laws", &["stats", "transmittance", "freeflight"]),
-    ("catalogue", &["laws", "paths", "vpl", "bidirectional", "metropolis", "compensation"]),
+    ("catalogue", &["laws", "paths", "vpl", "photons", "bidirectional", "metropolis", "compensation"]),
 ];
 
 fn reachable(from: &str) -> BTreeSet<&'static str> {
@@ -199,8 +199,9 @@ fn a_long_file_says_why() {
 
 /// Product lines of the harness, its packages and the build script included: all lines of formatted Rust but modules of tests, integration tests,
 /// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised: 1,200 for the
-/// integrator `bidirectional`, its light image, its table of strategies, and its report.
-const MOST_PRODUCT_LINES: usize = 31_400;
+/// integrator `bidirectional`, its light image, its table of strategies, and its report; 400 for the extensions of `path_tracer` and for
+/// `beam_radiance`, their keys, refusals, maps and groups.
+const MOST_PRODUCT_LINES: usize = 31_800;
 
 #[test]
 fn the_harness_does_not_grow() {

@@ -21,6 +21,7 @@
 
 mod checks;
 mod estimators;
+mod extensions;
 mod function;
 mod hard_cases;
 mod twins;

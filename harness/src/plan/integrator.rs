@@ -1,12 +1,14 @@
 //! An integrator of any kind, compiled for the medium that it meets.
 
+use super::beam_radiance::BeamRadiancePlan;
 use super::bidirectional::BidirectionalPlan;
+use super::path_tracer::PathTracerPlan;
 use super::single_scattering::SingleScatteringPlan;
-use super::transport::{PathTracerPlan, Stage, TransportPlan, VplPlan};
+use super::transport::{Stage, TransportPlan, VplPlan};
 use super::{AnyPhase, Tally, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, Unlawful};
-use crate::spec::{IntegratorSpec, Particles, ThicknessSpec, TransmittanceSpec};
+use crate::spec::{IntegratorSpec, Particles, ReuseSpec, ThicknessSpec, TransmittanceSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Spectrum, Volume};
@@ -45,12 +47,21 @@ pub enum IntegratorPlan {
     Vpl(Box<VplPlan>),
     /// Paths from the camera and from lights, joined, among surfaces.
     Bidirectional(BidirectionalPlan),
+    /// Photons beside camera rays, among surfaces.
+    BeamRadiance(BeamRadiancePlan),
 }
 
 /// An integrator on a medium, for one tile: one call per camera ray, and what happens below is compiled for the types of the scene.
 pub trait TileIntegrator<C> {
     /// Draws one estimate \[radiance\] for a ray whose direction has unit length.
     fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C;
+
+    /// Draws one estimate for each of `lines`, of pixels that use each other's paths; unless the integrator says otherwise, of each by itself.
+    fn radiances(&mut self, lines: &[Line], radiances: &mut [C], source: &mut Seeded) {
+        for (line, radiance) in lines.iter().zip(radiances) {
+            *radiance = self.radiance(line, source);
+        }
+    }
 
     /// Events that were counted so far.
     fn counts(&self) -> Counts;
@@ -91,6 +102,8 @@ impl<C> Splatted<C> {
 pub struct Counts {
     /// Walks that were cut: each is a bias.
     pub truncated: u64,
+    /// Flights that were not lawful for the integrator: each is a bias.
+    pub unlawful: u64,
     /// Compensation vertices that were tried.
     pub compensation_tried: u64,
     /// Compensation vertices that lay where something was lost.
@@ -182,6 +195,9 @@ impl IntegratorPlan {
             IntegratorSpec::Bidirectional(spec) => {
                 BidirectionalPlan::build(spec, scene).map(Self::Bidirectional)
             }
+            IntegratorSpec::BeamRadiance(spec) => {
+                BeamRadiancePlan::build(spec, scene).map(Self::BeamRadiance)
+            }
         }
     }
 
@@ -202,6 +218,7 @@ impl IntegratorPlan {
             Self::PathTracer(plan) => Some(&plan.transport),
             Self::Vpl(plan) => Some(&plan.transport),
             Self::Bidirectional(plan) => Some(&plan.transport),
+            Self::BeamRadiance(plan) => Some(&plan.transport),
             Self::Transmittance(_)
             | Self::ParticleTracer(_)
             | Self::PhotonTracer(_)
@@ -221,10 +238,48 @@ impl IntegratorPlan {
         }
     }
 
-    /// True if the pixels of a pass share virtual point lights, or light each other: a pass is then of one sample per pixel.
+    /// True if the pixels of a pass share virtual point lights, photons or paths, or light each other: a pass is then of one sample per
+    /// pixel.
     #[must_use]
     pub fn draws_in_batches(&self) -> bool {
-        matches!(self, Self::Vpl(_)) || self.splats()
+        matches!(self, Self::Vpl(_)) || self.splats() || self.correlation().is_some()
+    }
+
+    /// What pixels of a pass share beside virtual point lights and light images, in words.
+    #[must_use]
+    pub fn correlation(&self) -> Option<&'static str> {
+        match self {
+            Self::PathTracer(plan) if plan.reuse.is_some() => {
+                Some("pixels of a group share paths: the standard error is that of the means of passes")
+            }
+            Self::BeamRadiance(_) => Some(
+                "pixels of a pass share a map of photons: the standard error is that of the means of passes, each with a map of its own; \
+                 MSE and errors are those of the variance, the bias is not in them",
+            ),
+            _ => None,
+        }
+    }
+
+    /// The light paths whose photons an integrator asks, and how they fly.
+    #[must_use]
+    pub fn photons(&self) -> Option<(u32, &TransportPlan)> {
+        match self {
+            Self::PathTracer(plan) => plan.photons().map(|paths| (paths, &plan.transport)),
+            Self::BeamRadiance(plan) => Some((plan.photons, &plan.transport)),
+            _ => None,
+        }
+    }
+
+    /// True if all passes share what is prepared for the first: whatever it is, the expectation of a sample is the same.
+    #[must_use]
+    pub fn keeps_its_batch(&self) -> bool {
+        matches!(self, Self::PathTracer(_))
+    }
+
+    /// Pixels of a group that uses the paths of all, along rows and columns, and from one to the next.
+    #[must_use]
+    pub fn groups(&self) -> Option<ReuseSpec> {
+        if let Self::PathTracer(plan) = self { plan.reuse.clone() } else { None }
     }
 
     /// True if samples are not complete before all of their pass are drawn.
@@ -251,6 +306,7 @@ impl IntegratorPlan {
                 Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
                 Self::Vpl(plan) => plan.on(volume, stage, unlawful),
                 Self::Bidirectional(plan) => plan.on(volume, stage, unlawful),
+                Self::BeamRadiance(plan) => return plan.on(volume, stage, unlawful),
                 _ => plain(Attenuation::new(volume, lights, Regular)),
             });
         }
@@ -272,6 +328,7 @@ impl IntegratorPlan {
             Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
             Self::Vpl(plan) => plan.on(volume, stage, unlawful),
             Self::Bidirectional(plan) => plan.on(volume, stage, unlawful),
+            Self::BeamRadiance(plan) => return plan.on(volume, stage, unlawful),
         })
     }
 
@@ -281,6 +338,7 @@ impl IntegratorPlan {
         match self {
             Self::Transmittance(shadow) => shadow.is_regular().then_some(ESTIMATOR),
             Self::SingleScattering(plan) => plan.needs_closed_form(),
+            Self::PathTracer(plan) if plan.reuse.is_some() => Some("reuse"),
             Self::Bidirectional(plan) if plan.thickness == ThicknessSpec::Exact => Some("thickness: exact"),
             _ => self.transport().and_then(|transport| transport.shadow.is_regular().then_some(ESTIMATOR)),
         }

@@ -4,8 +4,10 @@
 //! type, so that a look-up is a direct call. Control and sampling extinction are enums inside the estimator: their
 //! branches are the same at every collision, and a bench shows that they cost nothing measurable.
 
+mod beam_radiance;
 mod bidirectional;
 mod integrator;
+mod path_tracer;
 mod phase;
 mod rays;
 mod scene;
@@ -15,13 +17,15 @@ mod tally;
 mod transport;
 mod walk;
 
+pub use beam_radiance::BeamRadiancePlan;
 pub use bidirectional::BidirectionalPlan;
 pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, Splatted, TileIntegrator};
+pub use path_tracer::PathTracerPlan;
 pub use phase::AnyPhase;
 pub use scene::{Radiant, ScenePlan, Spectra};
 pub use single_scattering::SingleScatteringPlan;
 pub use tally::Tally;
-pub use transport::{PathTracerPlan, Seen, Stage, TransportPlan, VplPlan};
+pub use transport::{Seen, Stage, TransportPlan, VplPlan};
 pub use walk::{SpaceSampling, WalkPlan};
 
 use crate::Failure;

@@ -1,7 +1,9 @@
 //! The surfaces of a scene, and whether lights and integrator fit them.
 
 use crate::Failure;
-use crate::spec::{LightSpec, MaterialSpec, PointSpec, SceneSpec, SurfaceSpec};
+use crate::spec::{
+    ExtensionSpec, IntegratorSpec, LightSpec, MaterialSpec, PathTracerSpec, PointSpec, SceneSpec, SurfaceSpec,
+};
 use fairflight_scene::{Material, SceneError, Spectrum, Surface, Surfaces};
 use glam::DVec3;
 
@@ -53,10 +55,19 @@ pub(super) fn check(spec: &SceneSpec) -> Result<(), Failure> {
             return Err(shut_in(&format!("surfaces.{i}"), j));
         }
     }
+    let guided = |spec: &PathTracerSpec| matches!(spec.extension, Some(ExtensionSpec::Guided(_)));
+    let shines = |light: &LightSpec| light.strength().is_none_or(|strength| strength.rgb() != [0.0; 3]);
+    if matches!(&spec.integrator, IntegratorSpec::PathTracer(spec) if guided(spec))
+        && !spec.lights.iter().any(shines)
+        && !spec.surfaces.iter().any(SurfaceSpec::emits)
+    {
+        return Err(Failure::refused("integrator.extension: guided needs a light that emits photons"));
+    }
     if spec.integrator.kind().transport().is_none() && !spec.surfaces.is_empty() {
         let name = spec.integrator.name();
         return Err(Failure::refused(format!(
-            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer, vpl and bidirectional"
+            "integrator.kind: {name} knows no surfaces; allowed with surfaces are path_tracer, vpl, bidirectional and \
+             beam_radiance"
         )));
     }
     Ok(())

@@ -1,14 +1,15 @@
-//! Integrators that know surfaces: the path tracer, and virtual point lights.
+//! Integrators that know surfaces: what is common to them, and virtual point lights.
 
 use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
 use super::{AnyPhase, Radiant, SpaceSampling, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, ShadowWorker, Unlawful};
-use crate::spec::{ClampSpec, ComponentSpec, PathTracerSpec, TransportSpec, VplSpec};
+use crate::spec::{ClampSpec, ComponentSpec, TransportSpec, VplSpec};
 use fairflight_compensation::{Brightness, Compensation, CompensationOptions, LocalMean};
 use fairflight_media::{EmptySpace, LineThickness};
+use fairflight_paths::Heuristic;
 use fairflight_paths::transport::{Emitters, MadeOf, Types, World};
-use fairflight_paths::{Heuristic, PathTracer};
+use fairflight_photons::PhotonMap;
 use fairflight_scene::{Camera, Geometry, Lights, Material, NoSurfaces, Spectrum, Surface, Surfaces};
 use fairflight_vpl::{Component, Gather, Pairing, Term, Vpl, VplIntegrator};
 use std::cell::Cell;
@@ -26,6 +27,8 @@ pub struct Stage<'s, C> {
     pub emitters: &'s Emitters<C>,
     /// The mean radiance of the image so far; `None` before the first pass.
     pub mean: Option<f64>,
+    /// Photons, for an integrator that asks them.
+    pub map: &'s PhotonMap<C>,
     /// Virtual point lights, for an integrator that gathers from them.
     pub vpls: &'s [Vpl<C>],
     /// The bound of their geometric term.
@@ -47,14 +50,6 @@ pub struct TransportPlan {
     /// Transmittance of connections.
     pub(super) shadow: Shadow,
     pub(super) heuristic: Heuristic,
-}
-
-/// A path tracer whose parameters are checked.
-#[derive(Debug)]
-pub struct PathTracerPlan {
-    /// The flights and connections of its paths.
-    pub transport: TransportPlan,
-    max_vertices: u32,
 }
 
 /// Virtual point lights whose parameters are checked.
@@ -86,13 +81,6 @@ impl TransportPlan {
             },
             heuristic: spec.heuristic,
         })
-    }
-}
-
-impl PathTracerPlan {
-    pub(super) fn build(spec: &PathTracerSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
-        let transport = TransportPlan::build(&spec.transport, scene)?;
-        Ok(Self { transport, max_vertices: spec.max_vertices })
     }
 }
 
@@ -170,32 +158,6 @@ impl VplPlan {
 /// The types of a scene that has surfaces of the type G, or [`NoSurfaces`].
 pub type Seen<'s, M, C, G> = MadeOf<C, M, &'s AnyPhase, G, SpaceSampling<'s>, ShadowWorker<'s>>;
 
-impl PathTracerPlan {
-    pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
-        &'s self,
-        volume: &'s SceneVolume<'s, M, C>,
-        Stage { lights, surfaces, .. }: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-    ) -> AnyIntegrator<'s, C> {
-        // One with neither surfaces nor a medium is rare, and needs no code of its own.
-        if !M::IS_EMPTY && Geometry::surfaces(surfaces).is_empty() {
-            self.among(World::<Seen<'s, M, C, _>>::new(volume, &NoSurfaces, lights), unlawful)
-        } else {
-            self.among(World::<Seen<'s, M, C, _>>::new(volume, surfaces, lights), unlawful)
-        }
-    }
-
-    fn among<'s, W: Types<Sampling = SpaceSampling<'s>, Shadow = ShadowWorker<'s>> + 's>(
-        &'s self,
-        world: World<'s, W>,
-        unlawful: &'s Cell<Option<Unlawful>>,
-    ) -> AnyIntegrator<'s, W::Spectrum> {
-        let TransportPlan { walk, shadow, heuristic } = &self.transport;
-        let tracer = PathTracer::new(world, walk.walk(), shadow.worker(unlawful), *heuristic);
-        counting(tracer.with_max_vertices(self.max_vertices), |tracer| Counts::cut(tracer.truncated()))
-    }
-}
-
 impl VplPlan {
     pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
@@ -233,7 +195,7 @@ impl VplPlan {
         counting(integrator.component(component), |integrator| {
             let (compensation_tried, compensation_inside) =
                 integrator.correction().as_ref().map_or((0, 0), Compensation::vertices);
-            Counts { truncated: integrator.truncated(), compensation_tried, compensation_inside }
+            Counts { compensation_tried, compensation_inside, ..Counts::cut(integrator.truncated()) }
         })
     }
 }

@@ -6,6 +6,7 @@ use crate::Failure;
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 use std::marker::PhantomData;
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 
 /// A rule that values of the type `T` keep.
@@ -122,6 +123,19 @@ impl<const LEAST: u64, const MOST: u64> Rule<u32> for Whole<LEAST, MOST> {
         Self::number(node).map(|number| number as u32)
     }
     fn written(value: &u32) -> Value {
+        json!(value)
+    }
+    fn schema() -> Value {
+        Self::described()
+    }
+}
+
+/// `LEAST` is above 0, and `MOST` lies within 32 bits.
+impl<const LEAST: u64, const MOST: u64> Rule<NonZeroU32> for Whole<LEAST, MOST> {
+    fn read(node: &Node<'_>) -> Result<NonZeroU32, Failure> {
+        Self::number(node).map(|number| NonZeroU32::new(number as u32).unwrap_or(NonZeroU32::MIN))
+    }
+    fn written(value: &NonZeroU32) -> Value {
         json!(value)
     }
     fn schema() -> Value {

@@ -1,8 +1,9 @@
 //! An image that grows pass by pass, with what it cost.
 
-use super::photons::PhotonLayer;
+use super::batch::Batch;
 use super::pixel::Pixel;
 use super::tile::Tile;
+use crate::spec::ReuseSpec;
 use fairflight_scene::Spectrum;
 use fairflight_stats::Moments;
 use glam::DVec3;
@@ -20,8 +21,8 @@ pub(super) struct Canvas<C> {
     pub pass_means: Vec<f64>,
     /// The mean of those means; `None` before the first pass.
     pub mean: Option<f64>,
-    /// The part of the image that is not drawn pixel by pixel.
-    pub photons: Option<PhotonLayer<C>>,
+    /// What the tiles of the last pass shared; in it the part of the image that is not drawn pixel by pixel.
+    pub batch: Option<Batch<C>>,
     /// Warning about the walks.
     pub warning: Option<String>,
 }
@@ -68,7 +69,7 @@ pub(super) struct Spent {
     pub cpu_seconds: f64,
     /// Walks that were cut at their greatest number of collisions.
     pub truncated: u64,
-    /// Virtual point lights, of all passes.
+    /// Virtual point lights or photons of maps, of all passes.
     pub vpls: u64,
     /// CPU seconds of their light paths, a part of all.
     pub light_path_seconds: f64,
@@ -84,16 +85,16 @@ pub(super) struct Spent {
 
 impl<C: Spectrum> Canvas<C> {
     /// No sample yet.
-    pub(super) fn new(resolution: [u32; 2], seed: u64) -> Self {
+    pub(super) fn new(resolution: [u32; 2], seed: u64, groups: Option<ReuseSpec>) -> Self {
         Self {
             seed,
             resolution,
-            tiles: Tile::all(resolution, seed),
+            tiles: Tile::all(resolution, seed, groups),
             cost: Spent::default(),
             samples: 0,
             pass_means: Vec::new(),
             mean: None,
-            photons: None,
+            batch: None,
             warning: None,
         }
     }
@@ -134,7 +135,7 @@ impl<C: Spectrum> Canvas<C> {
         let (cost, samples, warning) = (self.cost, self.samples, self.warning.clone());
         let strategies = self.strategies();
         let mut drawn = Drawn { pixels, cost, samples, mean_variance, strategies, warning };
-        if let Some(photons) = &self.photons {
+        if let Some(photons) = self.batch.as_ref().and_then(|batch| batch.photons.as_ref()) {
             photons.add_to(&mut drawn);
         }
         drawn
@@ -206,7 +207,7 @@ mod tests {
 
     #[test]
     fn passes_that_share_tell_the_variance_of_the_mean() {
-        let mut canvas = Canvas::<f64>::new([2, 2], 1);
+        let mut canvas = Canvas::<f64>::new([2, 2], 1, None);
         canvas.pass_means = vec![1.0];
         assert_eq!(canvas.drawn(true).mean_variance, MeanVariance::OfPasses(None));
         canvas.pass_means = vec![1.0, 2.0, 6.0];

@@ -60,11 +60,14 @@ struct In<'a, M, C> {
 impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
     fn prepare(&self, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
         let Self { draw, medium, emitters } = self;
-        match &draw.plan.integrator {
+        let integrator = &draw.plan.integrator;
+        match integrator {
             IntegratorPlan::Vpl(plan) => draw.virtual_lights(*medium, plan, (emitters, pass)),
             // In empty space nothing is scattered towards the camera.
             IntegratorPlan::PhotonTracer(walk) if !M::IS_EMPTY => draw.photons(*medium, walk),
-            _ => Ok((Batch::none(), Spent::default())),
+            _ => integrator.photons().map_or(Ok((Batch::none(), Spent::default())), |how| {
+                draw.map(*medium, how, (emitters, pass))
+            }),
         }
     }
 
@@ -74,8 +77,8 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
         let volume = draw.volume(*medium);
         let unlawful = Cell::new(None);
         let Radiant { lights, surfaces, .. } = draw.radiant;
-        let (camera, Batch { vpls, bound, mean, .. }) = (&draw.plan.camera, batch);
-        let stage = Stage { lights, surfaces, camera, emitters, mean: *mean, vpls, bound: *bound };
+        let (camera, Batch { vpls, map, bound, mean, .. }) = (&draw.plan.camera, batch);
+        let stage = Stage { lights, surfaces, camera, emitters, mean: *mean, map, vpls, bound: *bound };
         let integrator = draw.plan.integrator.on(&volume, stage, &unlawful);
         let added = integrator.and_then(|mut integrator| work(&mut *integrator));
         // Before the samples: a look-up that is not finite explains a sample that is not.
@@ -84,8 +87,14 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
             return Err(draw.plan.integrator.explain(unlawful));
         }
         let added = added?;
+        if added.counts.unlawful > 0 {
+            return Err(Failure::refused(format!(
+                "integrator.sigma_samp: reuse needs sigma_samp >= sigma_t, but {} flights met more",
+                added.counts.unlawful
+            )));
+        }
         let cpu_seconds = clock.elapsed().as_secs_f64();
-        let Counts { truncated, compensation_tried, compensation_inside } = added.counts;
+        let Counts { truncated, compensation_tried, compensation_inside, .. } = added.counts;
         let Splatted { light_paths, unseen_power, .. } = added.splatted;
         let lookups = volume.medium.lookups();
         let spent = Spent {
@@ -152,16 +161,21 @@ impl<'a, C: Spectrum> Draw<'a, C> {
             scene.integrate(&Batch::none(), &mut |_| Ok(Added::none()))?;
             canvas.warning = self.check_growth()?;
         }
-        let (mut batch, spent) = scene.prepare(number)?;
+        let kept = canvas.batch.take().filter(|_| integrator.keeps_its_batch());
+        let (mut batch, spent) = match kept {
+            Some(batch) => (batch, Spent::default()),
+            None => scene.prepare(number)?,
+        };
         batch.mean = canvas.mean;
         canvas.cost = canvas.cost.and(spent);
         let (range, camera) = ((canvas.samples, samples, canvas.seed), &self.plan.camera);
         let mut light = integrator.splats().then(|| LightImage::new(camera.resolution()));
-        let splats = light.is_some();
+        let (splats, groups) = (light.is_some(), integrator.groups());
         let draw_tile = |tile: &mut Tile<C>| {
-            scene.integrate(&batch, &mut |integrator| match splats {
-                true => tile.hold_samples(integrator, camera, range),
-                false => tile.add_samples(integrator, camera, range),
+            scene.integrate(&batch, &mut |integrator| match &groups {
+                Some(groups) => tile.share_samples(integrator, camera, range, groups),
+                None if splats => tile.hold_samples(integrator, camera, range),
+                None => tile.add_samples(integrator, camera, range),
             })
         };
         let mut sum = 0.0;
@@ -179,7 +193,7 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         }
         let [columns, rows] = camera.resolution().map(f64::from);
         canvas.push_pass(sum / (columns * rows * f64::from(samples)), samples);
-        canvas.photons = batch.photons;
+        canvas.batch = Some(batch);
         Ok(())
     }
 
@@ -299,7 +313,7 @@ mod tests {
         let spec = SceneSpec::parse(scene, SceneOverrides::default()).unwrap();
         let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
         let Spectra::Gray(radiant) = &plan.spectra else { panic!("it is gray") };
-        let mut canvas = Canvas::new(plan.camera.resolution(), 5);
+        let mut canvas = Canvas::new(plan.camera.resolution(), 5, None);
         for _ in 0..3 {
             let draw = Draw { plan: &plan, radiant, seed: 5, advance: &|_| () };
             draw.add(&Numbers, &mut canvas, 1).unwrap();

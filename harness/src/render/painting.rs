@@ -28,12 +28,13 @@ impl<'p> Painting<'p> {
     /// No sample yet.
     pub(crate) fn new(plan: &'p ScenePlan) -> Self {
         let (resolution, seed) = (plan.camera.resolution(), plan.seed);
+        let groups = || plan.integrator.groups();
         let canvases = match &plan.spectra {
-            Spectra::Gray(radiant) => Canvases::Gray(radiant, Canvas::new(resolution, seed)),
-            Spectra::Colour(radiant) => Canvases::Colour(radiant, Canvas::new(resolution, seed)),
+            Spectra::Gray(radiant) => Canvases::Gray(radiant, Canvas::new(resolution, seed, groups())),
+            Spectra::Colour(radiant) => Canvases::Colour(radiant, Canvas::new(resolution, seed, groups())),
             Spectra::Separate(channels) => Canvases::Separate(Box::new([0, 1, 2].map(|k| {
                 // Streams of their own, so that the noise of the channels is independent.
-                (&channels[k], Canvas::new(resolution, derive_seed(seed, k as u64)))
+                (&channels[k], Canvas::new(resolution, derive_seed(seed, k as u64), groups()))
             }))),
         };
         Self { plan, canvases, samples: 0 }

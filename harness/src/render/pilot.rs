@@ -13,8 +13,9 @@ use crate::Failure;
 use crate::field::MediumLibrary;
 use crate::image::{Exposure, luminance};
 use crate::plan::{Radiant, ScenePlan, Spectra};
-use crate::spec::{ComponentSpec, IntegratorSpec, PathTracerSpec, SceneSpec};
+use crate::spec::{BeamRadianceSpec, ComponentSpec, IntegratorSpec, PathTracerSpec, SceneSpec, VplSpec};
 use fairflight_scene::{Camera, Geometry, Segment, Spectrum};
+use std::num::NonZeroU32;
 
 /// Columns and rows, and those of a block.
 const SIDE: u32 = 32;
@@ -63,15 +64,21 @@ pub(super) fn reduced(spec: &SceneSpec, side: u32, samples: u32) -> Result<Scene
 /// The scene of the pilot.
 fn pilot(spec: &SceneSpec) -> Result<SceneSpec, Failure> {
     let mut pilot = reduced(spec, SIDE, SAMPLES)?;
-    if let IntegratorSpec::Vpl(vpl) = &mut pilot.integrator {
-        // All of the light is what a path tracer finds, too, and its cost does not grow with the number of
-        // light paths.
-        if vpl.component == ComponentSpec::All {
-            let tracer = PathTracerSpec::of_all_lengths(vpl.transport.clone());
-            pilot.integrator = IntegratorSpec::PathTracer(tracer);
-        } else {
+    match &mut pilot.integrator {
+        IntegratorSpec::Vpl(vpl) if vpl.component != ComponentSpec::All => {
             vpl.light_paths = vpl.light_paths.min(MOST_LIGHT_PATHS);
         }
+        // All of the light is what a path tracer finds, too, and its cost does not grow with the number of light paths.
+        IntegratorSpec::Vpl(VplSpec { transport, .. })
+        | IntegratorSpec::BeamRadiance(BeamRadianceSpec { transport, .. }) => {
+            pilot.integrator = PathTracerSpec::of_all_lengths(transport.clone()).into();
+        }
+        // Nor does that of any extension matter, which leave it as it is.
+        IntegratorSpec::PathTracer(tracer) => {
+            let PathTracerSpec { extension, light_candidates, reuse, .. } = tracer;
+            (*extension, *light_candidates, *reuse) = (None, NonZeroU32::MIN, None);
+        }
+        _ => {}
     }
     Ok(pilot)
 }

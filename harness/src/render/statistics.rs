@@ -22,6 +22,9 @@ pub(super) struct Statistics {
     pub exposure: Option<ShownAt>,
     /// Null for an integrator without any.
     pub virtual_point_lights: Option<VirtualLights>,
+    /// Left out for an integrator that asks no photons.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub photon_maps: Option<PhotonMaps>,
     /// Light by strategy; left out for an integrator that has one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub strategies: Vec<StrategyShare>,
@@ -100,6 +103,16 @@ pub(super) struct VirtualLights {
     /// Share of the compensation vertices that lay where something was lost; null if none was tried.
     #[serde(serialize_with = "number")]
     pub compensation_share_inside: Option<f64>,
+}
+
+/// Photons that light paths left, found by place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct PhotonMaps {
+    /// Number of maps: one for each sample per pixel, or one for all.
+    pub maps: u32,
+    pub photons_per_map: f64,
+    /// CPU seconds of light paths, a part of all.
+    pub light_path_seconds: f64,
 }
 
 /// Light that one strategy found, weighted.
@@ -258,6 +271,13 @@ impl Moments {
             compensation_vertices: self.cost.compensation_tried,
             compensation_share_inside: self.compensation_share(),
         };
+        let maps = if plan.integrator.keeps_its_batch() { 1 } else { self.samples };
+        let photon_maps = plan.integrator.photons().map(|_| PhotonMaps {
+            maps,
+            photons_per_map: self.cost.vpls as f64 / f64::from(maps),
+            light_path_seconds: self.cost.light_path_seconds,
+        });
+        let shared = plan.integrator.correlation().map_or_else(String::new, |what| format!("; {what}"));
         Statistics {
             image: Size { width, height, samples_per_pixel: self.samples, channels: self.channels },
             radiance: Radiance {
@@ -279,11 +299,12 @@ impl Moments {
             },
             exposure,
             virtual_point_lights: matches!(plan.integrator, IntegratorPlan::Vpl(_)).then(virtual_lights),
+            photon_maps,
             strategies: self.strategies(),
             unseen_power: (self.cost.light_paths > 0)
                 .then(|| self.cost.unseen_power / self.cost.light_paths as f64),
             method: format!(
-                "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}",
+                "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}{shared}",
                 prepared(&plan.integrator)
             ),
             warnings,

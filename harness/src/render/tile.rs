@@ -4,6 +4,8 @@ use super::light_image::LightImage;
 use super::pixel::Pixel;
 use crate::Failure;
 use crate::plan::{Counts, Splatted, Tally, TileIntegrator};
+use crate::spec::ReuseSpec;
+use fairflight_paths::extend::PixelGroups;
 use fairflight_scene::{Camera, Spectrum};
 use fairflight_sources::{Seeded, UniformSource};
 
@@ -38,10 +40,10 @@ impl Area {
     }
 }
 
-/// The areas of an image, each pixel in one of them.
-fn areas([columns, rows]: [u32; 2]) -> Vec<Area> {
-    let cut = |start: u32, end: u32| [start, end.min(start + SIDE)];
-    let steps = |end: u32| (0..end).step_by(SIDE as usize);
+/// The areas of an image, of so many columns and rows, each pixel in one of them.
+fn areas([columns, rows]: [u32; 2], side: u32) -> Vec<Area> {
+    let cut = |start: u32, end: u32| [start, end.min(start + side)];
+    let steps = |end: u32| (0..end).step_by(side as usize);
     let row =
         |top: u32| steps(columns).map(move |left| Area { columns: cut(left, columns), rows: cut(top, rows) });
     steps(rows).flat_map(row).collect()
@@ -69,7 +71,10 @@ impl<C: Spectrum> Tile<C> {
         + size_of::<[f32; 3]>();
 
     /// The tiles of an image without samples: a stream of its own for each pixel, whatever the tiles.
-    pub(super) fn all(resolution: [u32; 2], seed: u64) -> Vec<Self> {
+    ///
+    /// A group of pixels that use each other's paths lies in one tile.
+    pub(super) fn all(resolution: [u32; 2], seed: u64, groups: Option<ReuseSpec>) -> Vec<Self> {
+        let block = groups.map_or(SIDE, |groups| groups.tile * groups.spacing);
         let source = |[column, row]: [u32; 2]| {
             let index = u64::from(row) * u64::from(resolution[0]) + u64::from(column);
             Seeded::for_batch(seed, index)
@@ -79,7 +84,7 @@ impl<C: Spectrum> Tile<C> {
             let pixels = vec![Pixel::new(); sources.len()];
             Self { area, pixels, sources, waiting: Vec::new(), strategies: Vec::new() }
         };
-        areas(resolution).into_iter().map(tile).collect()
+        areas(resolution, SIDE.next_multiple_of(block)).into_iter().map(tile).collect()
     }
 
     /// Adds `samples` samples to each pixel, which has `drawn` of them.
@@ -106,6 +111,41 @@ impl<C: Spectrum> Tile<C> {
         range: (u32, u32, u64),
     ) -> Result<Added<C>, Failure> {
         self.draw(integrator, camera, range, |_, waiting, radiance| waiting.push(radiance))
+    }
+
+    /// Adds one sample to each pixel, of groups that use each other's paths; behind the camera their variates are those of the first pixel.
+    ///
+    /// # Errors
+    /// If a sample is not finite.
+    pub(super) fn share_samples(
+        &mut self,
+        integrator: &mut dyn TileIntegrator<C>,
+        camera: &Camera,
+        (drawn, _, seed): (u32, u32, u64),
+        groups: &ReuseSpec,
+    ) -> Result<Added<C>, Failure> {
+        let Area { columns: [left, right], rows: [top, bottom] } = self.area;
+        let index = |[column, row]: [u32; 2]| (row * (right - left) + column) as usize;
+        let groups = PixelGroups::new([right - left, bottom - top], groups.tile, groups.spacing);
+        let (mut sum, mut lines, mut radiances) = (0.0, Vec::new(), Vec::new());
+        for group in 0..groups.count() {
+            let place = |[column, row]: [u32; 2]| [left + column, top + row];
+            lines.clear();
+            lines.extend(groups.pixels(group).map(|pixel| {
+                let source = &mut self.sources[index(pixel)];
+                camera.ray(place(pixel), [source.next_uniform(), source.next_uniform()])
+            }));
+            let Some(first) = groups.pixels(group).next() else { continue };
+            radiances.clear();
+            radiances.resize(lines.len(), C::ZERO);
+            integrator.radiances(&lines, &mut radiances, &mut self.sources[index(first)]);
+            for (pixel, &radiance) in groups.pixels(group).zip(&radiances) {
+                check(radiance, place(pixel), (drawn, seed), integrator)?;
+                sum += radiance.mean();
+                self.pixels[index(pixel)].push(radiance);
+            }
+        }
+        Ok(Added { sum, counts: integrator.counts(), splatted: integrator.splatted() })
     }
 
     /// Completes the samples that wait.
@@ -142,15 +182,7 @@ impl<C: Spectrum> Tile<C> {
             for i in 0..samples {
                 let within = [source.next_uniform(), source.next_uniform()];
                 let radiance = integrator.radiance(&camera.ray(position, within), source);
-                if !radiance.is_finite() {
-                    let [column, row] = position;
-                    let by = integrator.culprit().map_or_else(String::new, |what| format!(" by {what}"));
-                    return Err(Failure::refused(format!(
-                        "the radiance of pixel (column {column}, row {row}), sample {}, seed {seed} is {:?}{by}",
-                        drawn + i,
-                        radiance.rgb()
-                    )));
-                }
+                check(radiance, position, (drawn + i, seed), integrator)?;
                 sum += radiance.mean();
                 take(pixel, &mut self.waiting, radiance);
             }
@@ -166,6 +198,23 @@ impl<C: Spectrum> Tile<C> {
             image[start..start + line.len()].copy_from_slice(line);
         }
     }
+}
+
+/// Refuses a sample that is not finite.
+fn check<C: Spectrum>(
+    radiance: C,
+    [column, row]: [u32; 2],
+    (sample, seed): (u32, u64),
+    integrator: &dyn TileIntegrator<C>,
+) -> Result<(), Failure> {
+    if radiance.is_finite() {
+        return Ok(());
+    }
+    let by = integrator.culprit().map_or_else(String::new, |what| format!(" by {what}"));
+    Err(Failure::refused(format!(
+        "the radiance of pixel (column {column}, row {row}), sample {sample}, seed {seed} is {:?}{by}",
+        radiance.rgb()
+    )))
 }
 
 /// The samples that a pass added to a tile.
@@ -194,7 +243,7 @@ mod tests {
     fn areas_cover_each_pixel_once() {
         for (columns, rows) in [(1, 1), (16, 16), (17, 33), (40, 5)] {
             let mut seen = vec![0; columns as usize * rows as usize];
-            for [column, row] in areas([columns, rows]).into_iter().flat_map(Area::positions) {
+            for [column, row] in areas([columns, rows], SIDE).into_iter().flat_map(Area::positions) {
                 seen[(row * columns + column) as usize] += 1;
             }
             assert!(seen.iter().all(|&times| times == 1), "{columns} x {rows}");
@@ -203,7 +252,7 @@ mod tests {
 
     #[test]
     fn pixels_are_copied_to_their_places() {
-        let mut tiles = Tile::<f64>::all([20, 18], 1);
+        let mut tiles = Tile::<f64>::all([20, 18], 1, None);
         for tile in &mut tiles {
             for (pixel, [column, row]) in tile.pixels.iter_mut().zip(tile.area.positions()) {
                 pixel.push(f64::from(row * 20 + column));

@@ -1,13 +1,14 @@
-//! A set of virtual point lights for each pass.
+//! Sets of virtual point lights, and maps of photons: what light paths leave for a pass.
 
 use super::batch::Batch;
 use super::canvas::Spent;
 use super::draw::Draw;
-use crate::plan::{Seen, VplPlan};
+use crate::plan::{Seen, TransportPlan, VplPlan};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::LineThickness;
 use fairflight_paths::transport::World;
+use fairflight_photons::PhotonMap;
 use fairflight_scene::{Geometry, NoSurfaces, Spectrum};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_vpl::{Emitters, KeepNear, Ledger, LightPaths, Vpl};
@@ -15,6 +16,8 @@ use rayon::prelude::*;
 
 /// The streams of sets are children of this child of the seed: no pixel has its number.
 const LIGHT_STREAM: u64 = u64::MAX - 2;
+/// The streams of maps, alike.
+const MAP_STREAM: u64 = u64::MAX - 4;
 /// The stream of the paths that are traced to find out why a set is empty.
 const TRIAL_STREAM: u64 = u64::MAX - 3;
 /// Number of paths that share a stream, and a worker.
@@ -56,11 +59,12 @@ impl<C: Spectrum> Draw<'_, C> {
     ) -> Result<(Batch<C>, Spent), Failure> {
         let bound = plan.bound(self.radiant, &self.plan.phase, emitters.power().max_channel())?;
         let is_dark = emitters.power().max_channel() <= 0.0;
+        let keep_near = plan.keep_near.map(|radius| KeepNear { point: self.plan.camera.origin(), radius });
         let trace = |stream: u64, paths: u32, share: f64| {
             self.light_paths(
                 surfaces,
                 medium,
-                plan,
+                (&plan.transport, keep_near),
                 emitters,
                 (derive_seed(stream, pass as u64), paths, share),
             )
@@ -79,22 +83,39 @@ impl<C: Spectrum> Draw<'_, C> {
         Ok((Batch { vpls, bound, ..Batch::none() }, spent))
     }
 
+    /// The map of photons of pass number `pass`, and what it cost. Surfaces are asked for also where there are none: that costs next to
+    /// nothing, and saves a copy.
+    ///
+    /// # Errors
+    /// If a look-up is not lawful.
+    pub(super) fn map<M: LineThickness + Copy + Sync>(
+        &self,
+        medium: M,
+        (paths, transport): (u32, &TransportPlan),
+        (emitters, pass): (&Emitters<C>, usize),
+    ) -> Result<(Batch<C>, Spent), Failure> {
+        let stream = derive_seed(derive_seed(self.seed, MAP_STREAM), pass as u64);
+        let drawn = (stream, paths, 1.0 / f64::from(paths));
+        let traced = self.light_paths(&self.radiant.surfaces, medium, (transport, None), emitters, drawn)?;
+        let spent = Spent { vpls: traced.vpls.len() as u64, ..traced.spent };
+        Ok((Batch { map: PhotonMap::new(traced.vpls), ..Batch::none() }, spent))
+    }
+
     /// Traces light paths in chunks with streams of their own, put together in order.
     fn light_paths<G: Geometry<C> + Sync, M: LineThickness + Copy + Sync>(
         &self,
         surfaces: &G,
         medium: M,
-        plan: &VplPlan,
+        (transport, keep_near): (&TransportPlan, Option<KeepNear>),
         emitters: &Emitters<C>,
         (stream, paths, share): (u64, u32, f64),
     ) -> Result<Traced<C>, Failure> {
-        let keep_near = plan.keep_near.map(|radius| KeepNear { point: self.plan.camera.origin(), radius });
         let chunk = |index: u32| {
             interrupt::check()?;
             let clock = ThreadTime::now();
             let volume = self.volume(medium);
             let world = World::<Seen<'_, _, _, _>>::new(&volume, surfaces, &self.radiant.lights);
-            let tracer = LightPaths::new(world, emitters, plan.transport.walk.walk()).keeping_near(keep_near);
+            let tracer = LightPaths::new(world, emitters, transport.walk.walk()).keeping_near(keep_near);
             let mut source = Seeded::for_batch(stream, u64::from(index));
             let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());
             for _ in index * CHUNK..((index + 1) * CHUNK).min(paths) {

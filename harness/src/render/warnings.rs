@@ -4,9 +4,10 @@ use super::passes::End;
 use super::statistics::Moments;
 use crate::plan::{IntegratorPlan, ScenePlan};
 use crate::spec::{
-    BidirectionalSpec, ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, PathTracerSpec, SceneSpec,
-    SurfaceSpec,
+    BeamRadianceSpec, BidirectionalSpec, ClampSpec, IntegratorSpec, LightSpec, MaterialSpec, PathTracerSpec,
+    SceneSpec, SurfaceSpec,
 };
+use fairflight_photons::SurfaceLight;
 
 /// The warnings; without an `end`, those of an image that is still being drawn.
 pub(super) fn warnings(
@@ -27,7 +28,8 @@ pub(super) fn warnings(
     {
         let limit = match &spec.integrator {
             IntegratorSpec::PathTracer(PathTracerSpec { max_vertices, .. })
-            | IntegratorSpec::Bidirectional(BidirectionalSpec { max_vertices, .. }) => {
+            | IntegratorSpec::Bidirectional(BidirectionalSpec { max_vertices, .. })
+            | IntegratorSpec::BeamRadiance(BeamRadianceSpec { max_vertices, .. }) => {
                 format!("max_vertices = {max_vertices} or ")
             }
             IntegratorSpec::Vpl(_) => "too many vertices or ".to_owned(),
@@ -51,7 +53,12 @@ pub(super) fn warnings(
         );
     }
     // Weighted against the light image a connection is bounded.
-    let bounded = matches!(&spec.integrator, IntegratorSpec::Bidirectional(spec) if spec.light_image);
+    let bounded = match &spec.integrator {
+        IntegratorSpec::Bidirectional(integrator) => integrator.light_image,
+        // Only paths from surfaces are connected.
+        IntegratorSpec::BeamRadiance(beam) => spec.surfaces.is_empty() || beam.surfaces == SurfaceLight::Map,
+        _ => false,
+    };
     let connected = spec.integrator.walk().is_some() && !photons && !bounded && spec.medium.is_some();
     if connected && spec.lights.iter().any(inside) {
         warnings.push(

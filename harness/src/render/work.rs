@@ -13,13 +13,16 @@ use crate::estimator::{EstimatorSpec, Expected, RayKnown};
 use crate::field::{AnyMedium, AnyProfile, MediumLibrary};
 use crate::plan::{IntegratorPlan, ScenePlan, Spectra};
 use crate::spec::{
-    IntegratorSpec, LineSplittingSpec, SceneSpec, SingleScatteringSpec, TransmittanceSpec, VplSpec,
+    ExtensionSpec, IntegratorSpec, LineSplittingSpec, PathTracerSpec, SceneSpec, SingleScatteringSpec,
+    TransmittanceSpec, VplSpec,
 };
 use crate::{Failure, interrupt};
 use fairflight_media::{Bounds, Medium};
 use fairflight_paths::SamplingExtinction;
+use fairflight_photons::Photon;
 use fairflight_vpl::Vpl;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 /// Columns and rows of the rays and walks that are sent.
 const SIDE: u32 = 8;
@@ -103,6 +106,19 @@ pub(super) fn check(
                     let lookups = walks.virtual_lights(vpl, (f64::from(samples), paths), shadow)?;
                     ("integrator.light_paths", lookups)
                 }
+                IntegratorSpec::BeamRadiance(beam) => {
+                    let near = walks.lights * f64::from(beam.photons) * chords.share_within(beam.radius);
+                    let traced =
+                        f64::from(samples) * walks.light_paths("integrator.photons", beam.photons)?;
+                    ("integrator.photons", traced + paths * (walks.each + near * shadow.max(1.0)))
+                }
+                IntegratorSpec::PathTracer(PathTracerSpec {
+                    extension: Some(ExtensionSpec::Guided(guided)),
+                    ..
+                }) => {
+                    let traced = walks.light_paths("integrator.extension.photons", guided.photons)?;
+                    ("integrator.extension.photons", traced + paths * walks.each)
+                }
                 IntegratorSpec::PathTracer(_) | IntegratorSpec::Bidirectional(_)
                     if shadow > MOST_ORDINARY =>
                 {
@@ -146,6 +162,8 @@ struct Chords {
     passed: f64,
     /// The greatest extent of the bounds \[length\].
     extent: f64,
+    /// Volume of the bounds \[length³\].
+    volume: f64,
     upper_bound: Option<f64>,
     /// One of the rays.
     profile: Option<AnyProfile>,
@@ -167,13 +185,13 @@ impl Chords {
                 longest = Some(profile);
             }
         }
-        let extent = match plan.bounds {
-            Bounds::Sphere { radius, .. } => 2.0 * radius,
-            Bounds::Box { min, max } => (max - min).length(),
+        let (extent, volume) = match plan.bounds {
+            Bounds::Sphere { radius, .. } => (2.0 * radius, 4.0 / 3.0 * PI * radius.powi(3)),
+            Bounds::Box { min, max } => ((max - min).length(), (max - min).element_product()),
         };
         let upper_bound = plan.medium.upper_bound();
         let passed = if length > 0.0 { passed / length } else { 1.0 };
-        Ok(Self { mean: length / WALKS, passed, extent, upper_bound, profile: longest })
+        Ok(Self { mean: length / WALKS, passed, extent, volume, upper_bound, profile: longest })
     }
 
     /// Look-ups of an estimator of transmittance on a ray of so many chords, one at least.
@@ -188,6 +206,11 @@ impl Chords {
             Expected::Between(least, most) => least.max(most * self.passed),
         };
         (work.on_each_ray + lookups).max(1.0)
+    }
+
+    /// The share of the bounds that lies within a radius of a chord.
+    fn share_within(&self, radius: f64) -> f64 {
+        if self.mean > 0.0 { (PI * radius * radius * self.mean / self.volume).min(1.0) } else { 0.0 }
     }
 
     fn single_scattering(&self, spec: &SingleScatteringSpec, lights: usize) -> f64 {
@@ -251,7 +274,16 @@ impl Walks {
         let mut pilot = reduced(spec, SIDE, 1)?;
         let mut scale = 1.0;
         match &mut pilot.integrator {
-            IntegratorSpec::PathTracer(tracer) => tracer.max_vertices = tracer.max_vertices.min(most as u32),
+            IntegratorSpec::PathTracer(tracer) => {
+                tracer.max_vertices = tracer.max_vertices.min(most as u32);
+                if let Some(ExtensionSpec::Guided(guided)) = &mut tracer.extension {
+                    guided.photons = guided.photons.min(LIGHT_PATHS);
+                }
+            }
+            IntegratorSpec::BeamRadiance(beam) => {
+                beam.max_vertices = beam.max_vertices.min(most as u32);
+                beam.photons = beam.photons.min(LIGHT_PATHS);
+            }
             IntegratorSpec::Bidirectional(spec) => spec.max_vertices = spec.max_vertices.min(most as u32),
             IntegratorSpec::Vpl(vpl) => {
                 vpl.light_paths = vpl.light_paths.min(LIGHT_PATHS);
@@ -280,11 +312,23 @@ impl Walks {
         // One that was cut has the rest of the bounds before it, as far as it may go.
         let rest = (rate * chords.extent).min(allowed) - most as f64;
         let each = scale * (drawn.lookups() as f64 / WALKS + cut * rest.max(0.0));
-        let lights = match &pilot.integrator {
-            IntegratorSpec::Vpl(vpl) => drawn.lights_per_set() / f64::from(vpl.light_paths),
-            _ => 0.0,
+        let light_paths = match &pilot.integrator {
+            IntegratorSpec::Vpl(vpl) => vpl.light_paths,
+            IntegratorSpec::BeamRadiance(beam) => beam.photons,
+            IntegratorSpec::PathTracer(PathTracerSpec {
+                extension: Some(ExtensionSpec::Guided(guided)),
+                ..
+            }) => guided.photons,
+            _ => 1,
         };
+        let lights = drawn.lights_per_set() / f64::from(light_paths);
         Ok(Self { each: each.max(1.0), lights })
+    }
+
+    /// Look-ups of the light paths of a map, whose photons have to fit into memory. The pilot's pixels were as many as its light paths.
+    fn light_paths(&self, key: &str, paths: u32) -> Result<f64, Failure> {
+        in_memory(key, self.lights * f64::from(paths), "photons", size_of::<Photon<DVec3>>())?;
+        Ok(f64::from(paths) * self.each)
     }
 
     /// Look-ups and connections of an image of virtual point lights.

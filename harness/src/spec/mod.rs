@@ -12,11 +12,12 @@ use crate::Failure;
 use crate::reader::Object;
 pub use experiment::{Experiment, Overrides};
 pub use scene::{
-    BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec, EnvironmentMapSpec,
-    EnvironmentSpec, IntegratorKind, IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, Particles,
-    PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec, SamplingFieldSpec, SceneOverrides,
-    SceneSpec, ShapeKind, ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, ThicknessSpec,
-    TracerSpec, TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
+    BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec,
+    EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec, GuidedSpec, IntegratorKind, IntegratorSpec,
+    LightSpec, LineSplittingSpec, MaterialSpec, Particles, PathTracerSpec, PhaseKind, PhaseSpec, PointSpec,
+    RectangleSpec, ResampledSpec, ReuseSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind,
+    ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, ThicknessSpec, TracerSpec,
+    TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };
 pub use sweep::{Request, Sweep};
 

@@ -6,7 +6,7 @@ use crate::render_refusals::refused;
 use serde_json::{Value, json};
 
 /// Haze over a floor, a lamp that reflects, a mirror.
-fn mixed(integrator: &Value) -> Value {
+pub(crate) fn mixed(integrator: &Value) -> Value {
     small(include_str!("../../scenes/mixed.json"), integrator)
 }
 
@@ -29,14 +29,14 @@ fn bidirectional(mut keys: Value) -> Value {
 }
 
 /// The mean of an image, and its standard error.
-fn mean(scene: &Value, samples: &str) -> [f64; 2] {
+pub(crate) fn mean(scene: &Value, samples: &str) -> [f64; 2] {
     let radiance = &statistics(scene, &["--samples-per-pixel", samples])["radiance"];
     ["mean", "standard_error"].map(|key| number(&radiance[key]))
 }
 
 /// Image means agree within five standard errors of both, a false alarm in two million, that are no more than a share of either.
 #[track_caller]
-fn agree([one, error]: [f64; 2], [other, its_error]: [f64; 2], share: f64) {
+pub(crate) fn agree([one, error]: [f64; 2], [other, its_error]: [f64; 2], share: f64) {
     let both = error.hypot(its_error);
     assert!((one - other).abs() < 5.0 * both, "{one} ± {error}, {other} ± {its_error}");
     assert!(both < share * other, "{one} ± {error}, {other} ± {its_error}");
@@ -58,7 +58,7 @@ fn the_mean_is_that_of_path_tracing() {
 }
 
 /// The bytes of the image and the statistics.
-fn drawn(scene: &Value, more: &[&str]) -> (Vec<u8>, Value) {
+pub(crate) fn drawn(scene: &Value, more: &[&str]) -> (Vec<u8>, Value) {
     let folder = tempfile::tempdir().unwrap();
     let paths = ["a.pfm", "b.json"].map(|name| folder.path().join(name).to_str().unwrap().to_owned());
     let arguments = ["render", "-", "--out", &paths[0], "--out", &paths[1]];

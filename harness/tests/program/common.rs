@@ -51,5 +51,8 @@ pub(crate) fn timeless(mut statistics: Value) -> Value {
     ] {
         statistics[part][key] = Value::Null;
     }
+    if let Some(maps) = statistics.get_mut("photon_maps") {
+        maps["light_path_seconds"] = Value::Null;
+    }
     statistics
 }

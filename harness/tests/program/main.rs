@@ -6,6 +6,7 @@ mod budget;
 mod common;
 mod estimate;
 mod exposure;
+mod extensions;
 mod info;
 mod lawful_runs;
 mod misread;

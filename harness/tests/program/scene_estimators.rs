@@ -18,13 +18,14 @@ struct Place {
     key: &'static str,
 }
 
-const PLACES: [Place; 6] = [
+const PLACES: [Place; 7] = [
     Place { integrator: "transmittance", key: "estimator" },
     Place { integrator: "single_scattering", key: "estimator" },
     Place { integrator: "single_scattering", key: "shadow" },
     Place { integrator: "path_tracer", key: "estimator" },
     Place { integrator: "vpl", key: "estimator" },
     Place { integrator: "bidirectional", key: "estimator" },
+    Place { integrator: "beam_radiance", key: "estimator" },
 ];
 
 impl Place {
@@ -63,6 +64,7 @@ impl Place {
             }
             "path_tracer" | "bidirectional" => json!({ "max_vertices": 3 }),
             "vpl" => json!({ "light_paths": 4, "clamp": 1 }),
+            "beam_radiance" => json!({ "photons": 100, "radius": 0.1, "max_vertices": 3 }),
             other => panic!("{other}"),
         };
         if self.key == "estimator" && self.integrator == "single_scattering" && estimator["kind"] == "regular"

@@ -93,7 +93,11 @@ fn materials_that_are_refused() {
 fn integrators_that_know_no_surfaces_are_refused() {
     let list = || json!([square(&gray())]);
     let blind = |kind: &str| format!("integrator.kind: {kind} knows no surfaces; allowed with surfaces are");
-    surfaces_refused(list(), |_| (), &[&blind("particle_tracer"), "path_tracer, vpl and bidirectional"]);
+    surfaces_refused(
+        list(),
+        |_| (),
+        &[&blind("particle_tracer"), "path_tracer, vpl, bidirectional and beam_radiance"],
+    );
     let transmittance = json!({ "kind": "transmittance", "estimator": { "kind": "regular" } });
     surfaces_refused(list(), |s| s["integrator"] = transmittance, &[&blind("transmittance")]);
 }

@@ -3,6 +3,7 @@
 mod bidirectional;
 mod exact;
 mod exactly;
+mod extensions;
 mod freeflight;
 mod media;
 pub(crate) mod paths;
@@ -115,7 +116,7 @@ pub enum Effort {
 #[derive(Debug)]
 pub struct Check {
     /// Unique: `medium/estimator`, `series/medium/estimator`, `combs/medium/estimator`, `cells/medium/estimator`, `hybrid/medium/estimator`,
-    /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `bidirectional/what/which`, `collision/model`,
+    /// `freeflight/medium/sampler`, `spectral/medium/sampler`, `points/set`, `paths/what/which`, `vpl/what/which`, `bidirectional/what/which`, `extensions/which`, `collision/model`,
     /// `phase/name`, `exact/what/which`, `twin/name`, `hard/number name`.
     pub id: String,
     /// The law.
@@ -190,7 +191,7 @@ impl Check {
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
     let mut checks = joined!(
-        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, bidirectional, exactly
+        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, bidirectional, extensions, exactly
     );
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());

@@ -12,6 +12,7 @@ use fairflight_paths::transport::World;
 use fairflight_paths::{
     Attenuation, Heuristic, Integrator, LineSplitting, ParticleTracer, PathTracer, Ratio, Uniform, Walk,
 };
+use fairflight_photons::{BeamRadiance, PhotonMap};
 use fairflight_scene::{Background, Camera, Lights, NoSurfaces, Volume};
 use fairflight_sources::{LARGEST_VARIATE, Seeded, UniformSource};
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
@@ -46,7 +47,7 @@ enum Exact {
     Vacuum,
 }
 
-const INTEGRATORS: [(&str, Exact, Radiance); 7] = [
+const INTEGRATORS: [(&str, Exact, Radiance); 8] = [
     ("transmittance", Exact::Absorbing, transmittance),
     ("particle_tracer", Exact::Furnace, particle_tracer),
     ("line_splitting", Exact::Furnace, line_splitting),
@@ -54,6 +55,7 @@ const INTEGRATORS: [(&str, Exact, Radiance); 7] = [
     ("path_tracer", Exact::Furnace, path_tracer),
     ("vpl", Exact::Vacuum, vpl),
     ("bidirectional", Exact::Vacuum, bidirectional),
+    ("beam_radiance", Exact::Vacuum, beam_radiance),
 ];
 
 /// Tells whether a kind is an integrator.
@@ -150,6 +152,20 @@ fn bidirectional(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -
     let mut light = Subpath::empty();
     integrator.trace_light(&mut light, &mut source);
     integrator.radiance(line, &light, &mut source)
+}
+
+/// The photons of one light path.
+fn beam_radiance(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
+    let (volume, lights) = (ball.volume(), lights());
+    let world = World::new(&volume, &NoSurfaces, &lights);
+    let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
+    let mut vertices = Vec::new();
+    LightPaths::new(world, &emitters, ball.walk())
+        .trace(1.0, &mut Ledger::empty(), &mut source, |vpl| vertices.push(vpl));
+    let map = PhotonMap::new(vertices);
+    BeamRadiance::new(world, (&map, 0.5), ball.walk(), Regular, Heuristic::Balance)
+        .expect(LAWFUL)
+        .radiance(line, &mut source)
 }
 
 /// Estimates of one case.

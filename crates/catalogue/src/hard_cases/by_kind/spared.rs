@@ -67,8 +67,14 @@ struct Reason {
 }
 
 /// Integrators that connect no vertices of two paths.
-const UNCONNECTED: [&str; 5] =
-    ["transmittance", "particle_tracer", "line_splitting", "single_scattering", "path_tracer"];
+const UNCONNECTED: [&str; 6] = [
+    "transmittance",
+    "particle_tracer",
+    "line_splitting",
+    "single_scattering",
+    "path_tracer",
+    "beam_radiance",
+];
 
 const REASONS: [Reason; 20] = [
     Reason {

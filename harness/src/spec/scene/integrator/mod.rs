@@ -1,6 +1,8 @@
 //! Integrators: one file per kind, with its keys; the list of all.
 
+mod beam_radiance;
 mod bidirectional;
+mod extension;
 mod line_splitting;
 mod particle_tracer;
 mod path_tracer;
@@ -10,7 +12,9 @@ mod transport;
 mod vpl;
 mod walk;
 
+pub use beam_radiance::BeamRadianceSpec;
 pub use bidirectional::{BidirectionalSpec, ThicknessSpec};
+pub use extension::{ExtensionSpec, GuidedSpec, ResampledSpec, ReuseSpec};
 pub use line_splitting::LineSplittingSpec;
 pub use particle_tracer::{Particles, TracerSpec};
 pub use path_tracer::PathTracerSpec;
@@ -32,6 +36,7 @@ registry! {
         PathTracer(PathTracerSpec),
         Vpl(VplSpec),
         Bidirectional(BidirectionalSpec),
+        BeamRadiance(BeamRadianceSpec),
     }
 }
 
@@ -77,6 +82,7 @@ impl IntegratorSpec {
             Self::PathTracer(spec) => Some(&mut spec.transport.walk),
             Self::Vpl(spec) => Some(&mut spec.transport.walk),
             Self::Bidirectional(spec) => Some(&mut spec.transport.walk),
+            Self::BeamRadiance(spec) => Some(&mut spec.transport.walk),
             Self::Transmittance(_) | Self::SingleScattering(_) => None,
         }
     }

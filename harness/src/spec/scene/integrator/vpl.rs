@@ -22,9 +22,9 @@ kind! {
         /// The flights, connections and weights of light paths and eye rays.
         transport: TransportSpec as Among,
         /// Light paths per set.
-        light_paths: u32 as Whole<1, MOST>,
+        light_paths: u32 as Whole<1, MOST_LIGHT_PATHS>,
         /// Points along an eye ray.
-        eye_samples: u32 as Whole<1, MOST> = 1,
+        eye_samples: u32 as Whole<1, MOST_LIGHT_PATHS> = 1,
         /// Cells along each axis of the local means of the extinction.
         local_mean_cells: u32 as Whole<1, MOST_CELLS> = 16,
         /// The distance from the camera within which all virtual point lights are kept; beyond, roulette keeps (distance/r)² of them \[length\].
@@ -34,7 +34,7 @@ kind! {
 }
 
 /// More light paths or points per ray are a slip of the keyboard.
-const MOST: u64 = 10_000_000;
+pub(super) const MOST_LIGHT_PATHS: u64 = 10_000_000;
 /// More cells take long to fill.
 const MOST_CELLS: u64 = 256;
 

@@ -1,0 +1,73 @@
+//! Extensions of the path tracer, each of which leaves its expectation as it is; and the expectation of the beam radiance estimate.
+
+use super::paths::{LAWFUL, result};
+use super::{Check, Law};
+use crate::bidirectional::scenes::mixed;
+use crate::extensions::{against_paths, furnace, noise, plain, ray, traced};
+use fairflight_laws::{CheckResult, Run};
+use fairflight_paths::extend::{OwnShare, PathReuse, Resampled};
+use fairflight_paths::{Heuristic, Integrator};
+use fairflight_photons::{GuideOptions, Guided, SurfaceLight};
+use fairflight_transmittance::Regular;
+use std::num::NonZeroU32;
+
+fn some(count: u32) -> NonZeroU32 {
+    NonZeroU32::new(count).expect(LAWFUL)
+}
+
+fn share() -> OwnShare {
+    OwnShare::new(0.3).expect(LAWFUL)
+}
+
+fn unbiased(name: &str, samples: u64, law: impl Fn(Run) -> CheckResult + Send + Sync + 'static) -> Check {
+    let id = format!("extensions/{name}");
+    Check::new(id, Law::Radiance, "extended path tracing", "lamps and a mirror", samples, law)
+        .about(["path_tracer"])
+}
+
+fn guided(name: &str, samples: u64, is_noise: bool) -> Check {
+    unbiased(name, samples, move |run| {
+        let view = mixed();
+        let map = if is_noise { noise(&view, 500, run.seed) } else { traced(&view, 500, run.seed) };
+        let options = GuideOptions { nearest: some(20), cells: some(16), own_share: share() };
+        let mut tracer = plain(&view).with_extension(Guided::new(&map, options));
+        result(&against_paths(&view, |source| tracer.radiance(&ray(&view, source), source), run), run)
+    })
+}
+
+/// Checks of each extension, of a map of noise too; and of the beam radiance estimate by replicas.
+pub(super) fn checks() -> Vec<Check> {
+    let beam = |name: &str, surfaces: SurfaceLight, samples: u64| {
+        let id = format!("extensions/beam/{name}");
+        let law = move |run| result(&furnace(surfaces, 100, run), run);
+        Check::new(id, Law::OwnExpectation, "beam radiance estimate", "a furnace with a mirror", samples, law)
+            .about(["beam_radiance"])
+    };
+    vec![
+        guided("guided by photons", 150_000, false),
+        guided("guided by noise", 250_000, true),
+        unbiased("resampled directions", 200_000, |run| {
+            let view = mixed();
+            let mut tracer = plain(&view).with_extension(Resampled::new(some(4), share()));
+            result(&against_paths(&view, |source| tracer.radiance(&ray(&view, source), source), run), run)
+        }),
+        unbiased("resampled lights", 150_000, |run| {
+            let view = mixed();
+            let mut tracer = plain(&view).with_light_candidates(some(6));
+            result(&against_paths(&view, |source| tracer.radiance(&ray(&view, source), source), run), run)
+        }),
+        unbiased("paths of four pixels", 150_000, |run| {
+            let view = mixed();
+            let mut reuse = PathReuse::new(view.world::<Regular>(), view.walk, Regular, Heuristic::Balance);
+            let mut radiances = [0.0; 4];
+            let group = |source: &mut _| {
+                let lines = [(); 4].map(|()| ray(&view, source));
+                reuse.radiances(&lines, &mut radiances, source);
+                0.25 * radiances.iter().sum::<f64>()
+            };
+            result(&against_paths(&view, group, run), run)
+        }),
+        beam("paths from surfaces", SurfaceLight::Path, 20_000),
+        beam("photons on surfaces", SurfaceLight::Map, 20_000),
+    ]
+}
