@@ -22,8 +22,6 @@ pub struct Options<K, T> {
     pub roulette: Option<f64>,
     /// Light paths for each sample; 0 for one that lights no image.
     pub light_paths: u32,
-    /// Paths for each sample: they are cheaper, and have more variance.
-    pub paths: u32,
 }
 
 impl<M: Medium> View<M> {
@@ -106,8 +104,7 @@ pub fn up_to<M: Medium, K: WeightThickness<M> + Clone, T: RayTransmittance<M> + 
     };
     let measured = measure(run.seed, run.samples, |source| {
         let found = view.sum((&mut both, &mut light), options.light_paths, source, &of);
-        let paths: f64 = (0..options.paths).map(|_| traced(source)).sum();
-        scale + found - paths / f64::from(options.paths)
+        scale + found - traced(source)
     })?;
     Ok(judge(&measured, &Reference::exact(scale).with_mild_tails(), run.alpha))
 }
@@ -147,7 +144,6 @@ pub fn light_image<M: fairflight_media::LineThickness>(
         shadow: fairflight_transmittance::Regular,
         roulette: None,
         light_paths: 1,
-        paths: 1,
     };
     let emitters = view.emitters::<fairflight_transmittance::Regular>();
     let mut integrator = view.bidirectional(&emitters, &options);

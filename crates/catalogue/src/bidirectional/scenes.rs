@@ -181,11 +181,13 @@ pub(crate) fn bulb() -> View<Homogeneous> {
     view((homogeneous(0.3), 0.3, 0.9), surfaces, sources(vec![]))
 }
 
-/// A floor in haze under a point light that stands above the haze: no direction meets it.
+/// A floor in haze under a point light that stands above the haze: no direction meets it. Flights collide as often as the haze: a path
+/// tracer whose energies may be negative would have heavy tails here.
 pub(crate) fn lit_by_a_point() -> View<Homogeneous> {
     let floor = diffuse(rectangle(DVec3::splat(-1.0), 2.0 * DVec3::X, 2.0 * DVec3::Z), 0.7, 0.0);
     let lights = sources(vec![point(dvec3(0.2, 0.8, 0.1), 4.0)]);
-    view((homogeneous(0.8), 0.3, 0.9), vec![floor], lights)
+    let view = view((homogeneous(0.8), 0.3, 0.9), vec![floor], lights);
+    View { walk: Walk::new(Version::NonTerminating, Uniform::new(0.8).expect(LAWFUL)), ..view }
 }
 
 /// An endless medium of this extinction and phase function about a point light.
@@ -206,13 +208,14 @@ pub(crate) fn haze_in_the_sun() -> View<AnalyticCosine> {
     View { walk: Walk::new(Version::NonTerminating, Uniform::new(1.6).expect(LAWFUL)), ..view }
 }
 
-/// A ball that glows and reflects as much, so that the radiance in it is 1, with haze, a mirror and a ball of glass in it.
+/// A ball that glows and reflects as much, so that the radiance in it is 1, with haze, a mirror and a ball of glass in it. The haze ends before
+/// the glass: what is scattered there may be reflected a hundred times before it gets out, a heavy tail.
 pub(crate) fn glowing() -> View<Homogeneous> {
     let wall = diffuse(ball(DVec3::ZERO, 1.0), 0.5, 0.5);
     let mirror = smooth(ball(dvec3(0.4, 0.2, 0.3), 0.25), Material::Mirror);
     let clear = smooth(ball(dvec3(-0.3, -0.3, 0.3), 0.3), glass(1.5));
     let mut view = view((homogeneous(0.4), 0.4, 1.0), vec![wall, mirror, clear], sources(vec![]));
-    view.volume.bounds = Bounds::sphere(DVec3::ZERO, 1.0).expect(LAWFUL);
+    view.volume.bounds = Bounds::sphere(dvec3(0.3, 0.3, -0.3), 0.7).expect(LAWFUL);
     view.camera = Camera::new(dvec3(0.0, 0.0, -0.6), DVec3::ZERO, DVec3::Y, 70.0, [1, 1]).expect(LAWFUL);
     view
 }

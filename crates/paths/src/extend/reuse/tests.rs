@@ -108,20 +108,54 @@ fn any_group_has_the_expectation_of_the_path_tracer() {
 #[test]
 fn twins_are_rejected() {
     type Twin = fn(Factors) -> f64;
-    let twins: [(&str, Twin); 5] = [
+    let twins: [(&str, Twin); 4] = [
         // reuse_receiver: each pixel counts by its own density, over their number.
         ("receiver", |_| 1.0),
         // reuse_no_t.
         ("transmittance", |factors| factors.density() / factors.transmittance),
         ("Jacobian", |factors| factors.density() / factors.geometric),
         ("direction", |factors| factors.density() / factors.scattered),
-        ("survival", |factors| factors.density() / factors.survival),
     ];
     for seed in SEEDS {
         for (name, twin) in twins {
             let found = in_court(8, twin, (100_000, seed));
             let is_rejected = found.iter().any(|verdict| verdict.sound == Some(false));
             assert!(is_rejected, "{name}, seed {seed}: {found:?}");
+        }
+    }
+}
+
+/// A dark plate on a bright floor under an even sky of radiance 1, in a group of a pixel on either: each reflects its reflectance, but for
+/// the square of a millionth of the sky that the plate hides.
+fn on_dark_and_bright(density: impl Fn(Factors) -> f64, seed: u64) -> [Verdict; 2] {
+    let reflectances = [0.1, 0.9];
+    let [dark, bright] = reflectances.map(diffuse);
+    let mut scene: Scene<EmptySpace> =
+        vacuum(vec![square(0.0, 5.0, bright, 0.0), square(1e-6, 0.5, dark, 0.0)], vec![]);
+    scene.lights.background.constant = 1.0;
+    let lines = [0.3, 0.7].map(|x| Line { origin: dvec3(x, 0.0, 1.0), direction: DVec3::NEG_Z });
+    let mut reuse = PathReuse::new(scene.world(), walk(1.0), Regular, Heuristic::Balance);
+    let (mut source, mut radiances) = (Seeded::new(derive_seed(seed, 6)), [0.0; 2]);
+    let mut moments = [Moments::new(); 2];
+    for _ in 0..100_000 {
+        reuse.radiances_by(&lines, &mut radiances, &density, &mut source);
+        moments.iter_mut().zip(radiances).for_each(|(moments, radiance)| moments.push(radiance));
+    }
+    [0, 1]
+        .map(|pixel| judge(&moments[pixel], &Reference::exact(reflectances[pixel]).with_mild_tails(), ALPHA))
+}
+
+#[test]
+fn survival_belongs_to_the_density() {
+    for seed in SEEDS {
+        for Verdict { sound, reason, .. } in on_dark_and_bright(Factors::density, seed) {
+            assert_eq!(sound, Some(true), "seed {seed}: {reason}");
+        }
+        // Each has the mean of both survivals over its own too much.
+        for Verdict { sound, reason, .. } in
+            on_dark_and_bright(|factors| factors.density() / factors.survival, seed)
+        {
+            assert_eq!(sound, Some(false), "seed {seed}: {reason}");
         }
     }
 }
