@@ -102,7 +102,8 @@ pub(crate) fn furnace(surfaces: SurfaceLight, paths: u32, run: Run) -> Result<Ve
     let lights = Lights { background: Background { constant: 1.0, maps: Vec::new() }, sources: Vec::new() };
     let volume = Volume {
         medium: Homogeneous::new(SIGMA).expect(LAWFUL),
-        bounds: Bounds::aligned_box(DVec3::splat(-2.0), DVec3::splat(2.5)).expect(LAWFUL),
+        // As small as beam and radius allow: photons start anywhere on a ball about it.
+        bounds: Bounds::aligned_box(dvec3(-0.5, -0.5, -1.0), dvec3(2.0, 0.5, 1.5)).expect(LAWFUL),
         albedo: 1.0,
         phase: HenyeyGreenstein::new(0.4).expect(LAWFUL),
     };

@@ -52,6 +52,7 @@ impl Place {
         match self.integrator {
             "vpl" => 2000,
             "bidirectional" => 600,
+            "beam_radiance" => 360,
             _ => 120,
         }
     }
@@ -64,7 +65,7 @@ impl Place {
             }
             "path_tracer" | "bidirectional" => json!({ "max_vertices": 3 }),
             "vpl" => json!({ "light_paths": 4, "clamp": 1 }),
-            "beam_radiance" => json!({ "photons": 100, "radius": 0.1, "max_vertices": 3 }),
+            "beam_radiance" => json!({ "photons": 100, "radius": 0.5, "max_vertices": 3 }),
             other => panic!("{other}"),
         };
         if self.key == "estimator" && self.integrator == "single_scattering" && estimator["kind"] == "regular"

@@ -162,6 +162,13 @@ pub(crate) fn sky() -> View<Homogeneous> {
     view((homogeneous(0.5), 0.4, 0.9), surfaces, lights)
 }
 
+/// The same without the point light, which is bright without bound nearby, by flights that end nowhere but outside: short tails.
+pub(crate) fn haze_under_a_sky() -> View<Homogeneous> {
+    let mut view = sky();
+    view.lights.sources.truncate(1);
+    View { walk: Walk::new(Version::NonTerminating, Uniform::new(0.5).expect(LAWFUL)), ..view }
+}
+
 /// A lamp and a faint point light over a strongly forward scattering medium, looked up for more often than it collides.
 pub(crate) fn forward() -> View<Homogeneous> {
     let mut surfaces = room(0.5);

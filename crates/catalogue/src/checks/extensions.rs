@@ -2,7 +2,7 @@
 
 use super::paths::{LAWFUL, result};
 use super::{Check, Law};
-use crate::bidirectional::scenes::mixed;
+use crate::bidirectional::scenes::haze_under_a_sky;
 use crate::extensions::{against_paths, furnace, noise, plain, ray, traced};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_paths::extend::{OwnShare, PathReuse, Resampled};
@@ -21,13 +21,13 @@ fn share() -> OwnShare {
 
 fn unbiased(name: &str, samples: u64, law: impl Fn(Run) -> CheckResult + Send + Sync + 'static) -> Check {
     let id = format!("extensions/{name}");
-    Check::new(id, Law::Radiance, "extended path tracing", "lamps and a mirror", samples, law)
+    Check::new(id, Law::Radiance, "extended path tracing", "haze under a sky", samples, law)
         .about(["path_tracer"])
 }
 
 fn guided(name: &str, samples: u64, is_noise: bool) -> Check {
     unbiased(name, samples, move |run| {
-        let view = mixed();
+        let view = haze_under_a_sky();
         let map = if is_noise { noise(&view, 500, run.seed) } else { traced(&view, 500, run.seed) };
         let options = GuideOptions { nearest: some(20), cells: some(16), own_share: share() };
         let mut tracer = plain(&view).with_extension(Guided::new(&map, options));
@@ -37,27 +37,24 @@ fn guided(name: &str, samples: u64, is_noise: bool) -> Check {
 
 /// Checks of each extension, of a map of noise too; and of the beam radiance estimate by replicas.
 pub(super) fn checks() -> Vec<Check> {
-    let beam = |name: &str, surfaces: SurfaceLight, samples: u64| {
-        let id = format!("extensions/beam/{name}");
-        let law = move |run| result(&furnace(surfaces, 100, run), run);
-        Check::new(id, Law::OwnExpectation, "beam radiance estimate", "a furnace with a mirror", samples, law)
-            .about(["beam_radiance"])
-    };
+    let law = |run| result(&furnace(SurfaceLight::Map, 100, run), run);
+    let (estimator, medium) = ("beam radiance estimate", "a furnace with a mirror");
+    let beam = Check::new("extensions/beam radiance", Law::OwnExpectation, estimator, medium, 220_000, law);
     vec![
-        guided("guided by photons", 150_000, false),
-        guided("guided by noise", 250_000, true),
+        guided("guided by photons", 200_000, false),
+        guided("guided by noise", 200_000, true),
         unbiased("resampled directions", 200_000, |run| {
-            let view = mixed();
+            let view = haze_under_a_sky();
             let mut tracer = plain(&view).with_extension(Resampled::new(some(4), share()));
             result(&against_paths(&view, |source| tracer.radiance(&ray(&view, source), source), run), run)
         }),
-        unbiased("resampled lights", 150_000, |run| {
-            let view = mixed();
+        unbiased("resampled lights", 200_000, |run| {
+            let view = haze_under_a_sky();
             let mut tracer = plain(&view).with_light_candidates(some(6));
             result(&against_paths(&view, |source| tracer.radiance(&ray(&view, source), source), run), run)
         }),
-        unbiased("paths of four pixels", 150_000, |run| {
-            let view = mixed();
+        unbiased("paths of four pixels", 200_000, |run| {
+            let view = haze_under_a_sky();
             let mut reuse = PathReuse::new(view.world::<Regular>(), view.walk, Regular, Heuristic::Balance);
             let mut radiances = [0.0; 4];
             let group = |source: &mut _| {
@@ -67,7 +64,6 @@ pub(super) fn checks() -> Vec<Check> {
             };
             result(&against_paths(&view, group, run), run)
         }),
-        beam("paths from surfaces", SurfaceLight::Path, 20_000),
-        beam("photons on surfaces", SurfaceLight::Map, 20_000),
+        beam.about(["beam_radiance"]),
     ]
 }

@@ -38,6 +38,10 @@ impl IntegratorKind for BeamRadianceSpec {
         Some(&self.transport)
     }
     fn bias(&self) -> Option<&'static str> {
-        Some("the beam radiance estimate is biased: scattered light is smeared out over its radius")
+        Some(if self.transport.is_biased_baseline() {
+            "the beam radiance estimate is biased, and so is its transmittance, that of a biased baseline"
+        } else {
+            "the beam radiance estimate is biased: scattered light is smeared out over its radius"
+        })
     }
 }
