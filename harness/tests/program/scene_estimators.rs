@@ -52,7 +52,7 @@ impl Place {
         match self.integrator {
             "vpl" => 2000,
             "bidirectional" => 600,
-            "beam_radiance" => 360,
+            "beam_radiance" => 1200,
             _ => 120,
         }
     }

@@ -162,10 +162,11 @@ pub(crate) fn sky() -> View<Homogeneous> {
     view((homogeneous(0.5), 0.4, 0.9), surfaces, lights)
 }
 
-/// The same without the point light, which is bright without bound nearby, by flights that end nowhere but outside: short tails.
+/// The same without the point light, which is bright without bound nearby, in haze that absorbs half of what it meets: short paths and tails.
 pub(crate) fn haze_under_a_sky() -> View<Homogeneous> {
     let mut view = sky();
     view.lights.sources.truncate(1);
+    view.volume.albedo = 0.5;
     View { walk: Walk::new(Version::NonTerminating, Uniform::new(0.5).expect(LAWFUL)), ..view }
 }
 
