@@ -95,7 +95,7 @@ type Furnace = MadeOf<f64, Homogeneous, HenyeyGreenstein, Surfaces<f64>, Uniform
 ///
 /// # Errors
 /// If an estimate is no number.
-pub(crate) fn furnace(surfaces: SurfaceLight, paths: u32, run: Run) -> Result<Verdict, NotFinite> {
+pub(crate) fn furnace(paths: u32, run: Run) -> Result<Verdict, NotFinite> {
     let mirror = rectangle(dvec3(-1.0, -1.0, 0.0), dvec3(2.0, 0.0, 2.0), 2.0 * DVec3::Y);
     let panel = rectangle(dvec3(1.5, -1.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::Z);
     let all = Surfaces::new(vec![smooth(mirror, Material::Mirror), diffuse(panel, 0.6, 0.4)]);
@@ -121,7 +121,7 @@ pub(crate) fn furnace(surfaces: SurfaceLight, paths: u32, run: Run) -> Result<Ve
         let map = PhotonMap::new(vertices);
         BeamRadiance::new(world, (&map, RADIUS), walk, Regular, Heuristic::Balance)
             .expect(LAWFUL)
-            .with_surfaces(surfaces)
+            .with_surfaces(SurfaceLight::Map)
             .radiance(&line, source)
     })?;
     Ok(judge(&measured, &Reference::exact(1.0).with_mild_tails(), run.alpha))

@@ -7,7 +7,7 @@ use crate::extensions::{against_paths, furnace, noise, plain, ray, traced};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_paths::extend::{OwnShare, PathReuse, Resampled};
 use fairflight_paths::{Heuristic, Integrator};
-use fairflight_photons::{GuideOptions, Guided, SurfaceLight};
+use fairflight_photons::{GuideOptions, Guided};
 use fairflight_transmittance::Regular;
 use std::num::NonZeroU32;
 
@@ -39,7 +39,7 @@ fn guided(name: &str, samples: u64, is_noise: bool) -> Check {
 
 /// Checks of each extension, of a map of noise too; and of the beam radiance estimate by replicas.
 pub(super) fn checks() -> Vec<Check> {
-    let law = |run| result(&furnace(SurfaceLight::Map, 100, run), run);
+    let law = |run| result(&furnace(100, run), run);
     let (estimator, medium) = ("beam radiance estimate", "a furnace with a mirror");
     let beam = Check::new("extensions/beam radiance", Law::OwnExpectation, estimator, medium, 220_000, law);
     vec![
