@@ -1,6 +1,6 @@
 //! Bidirectional path tracing: what is rendered, told and refused.
 
-use crate::common::{harness, timeless};
+use crate::common::{harness, in_noise, timeless};
 use crate::render::{number, statistics};
 use crate::render_refusals::refused;
 use serde_json::{Value, json};
@@ -167,14 +167,6 @@ fn keys_that_are_refused() {
     );
     refuses(json!({ "max_vertices": 0 }), &["integrator.max_vertices"]);
     refuses(json!({ "light_paths": 5 }), &["integrator.light_paths", "unknown key"]);
-    let mut noise = mixed(&bidirectional(json!({ "thickness": "exact" })));
-    let volume = noise["medium"].as_object_mut().unwrap();
-    volume.remove("sigma_t");
-    volume.extend(
-        json!({ "kind": "perlin", "octaves": 2, "frequency": 1, "seed": 3, "scale": 0.1, "offset": 0.2 })
-            .as_object()
-            .unwrap()
-            .clone(),
-    );
+    let noise = in_noise(mixed(&bidirectional(json!({ "thickness": "exact" }))));
     refused(&noise.to_string(), &["integrator.thickness: exact", "closed form"]);
 }

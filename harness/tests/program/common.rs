@@ -1,7 +1,7 @@
 //! Drives the program as a user would: arguments and standard input in, exit code and both streams out.
 
 use fairflight_harness::{Host, run};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Exit code and output of a run of the program.
 #[derive(Debug)]
@@ -55,4 +55,14 @@ pub(crate) fn timeless(mut statistics: Value) -> Value {
         maps["light_path_seconds"] = Value::Null;
     }
     statistics
+}
+
+/// A scene with Perlin noise in place of its homogeneous medium: without a closed form.
+pub(crate) fn in_noise(mut scene: Value) -> Value {
+    let medium = scene["medium"].as_object_mut().unwrap();
+    medium.remove("sigma_t");
+    let noise =
+        json!({ "kind": "perlin", "octaves": 2, "frequency": 1, "seed": 3, "scale": 0.1, "offset": 0.2 });
+    medium.extend(noise.as_object().unwrap().clone());
+    scene
 }

@@ -1,6 +1,7 @@
 //! Extensions of the path tracer and the beam radiance estimate: what is rendered, told and refused.
 
 use crate::bidirectional::{agree, drawn, mean, mixed};
+use crate::common::in_noise;
 use crate::render::{number, statistics};
 use crate::render_refusals::refused;
 use serde_json::{Value, json};
@@ -124,15 +125,7 @@ fn keys_that_are_refused() {
     let cells = json!({ "cells": [2, 2, 2], "factor": 0.5, "floor": 0.1 });
     let below = json!({ "reuse": { "tile": 2 }, "sigma_samp": cells, "allow_supercritical": true });
     refuses(below, &["integrator.sigma_samp", "met more"]);
-    let mut noise = path_tracer(json!({ "reuse": { "tile": 2 } }));
-    let volume = noise["medium"].as_object_mut().unwrap();
-    volume.remove("sigma_t");
-    volume.extend(
-        json!({ "kind": "perlin", "octaves": 2, "frequency": 1, "seed": 3, "scale": 0.1, "offset": 0.2 })
-            .as_object()
-            .unwrap()
-            .clone(),
-    );
+    let noise = in_noise(path_tracer(json!({ "reuse": { "tile": 2 } })));
     refused(&noise.to_string(), &["integrator.reuse", "closed form"]);
     let mut dark = path_tracer(json!({ "extension": { "kind": "guided", "photons": 100 } }));
     dark["surfaces"][1]["emission"] = json!(0);
