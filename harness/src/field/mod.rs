@@ -33,11 +33,8 @@ pub use profile::AnyProfile;
 pub use vdb::VdbSpec;
 pub use voxel_lattice::VoxelLattice;
 
-use crate::reader::Node;
-use crate::reader::rule::Ruled;
 use crate::{Failure, registry};
 use fairflight_media::Bounds;
-use serde_json::{Value, json};
 
 registry! {
     /// The extinction along one ray.
@@ -52,7 +49,7 @@ registry! {
 
 registry! {
     /// The extinction in space.
-    MediumSpec: MediumKind {
+    MediumSpec: MediumKind as "medium" {
         Homogeneous(HomogeneousSpec),
         AnalyticCosine(AnalyticCosineSpec),
         Perlin(PerlinSpec),
@@ -77,18 +74,6 @@ pub trait MediumKind {
     /// # Errors
     /// If a file cannot be read, or a parameter is not lawful.
     fn build(&self, library: &MediumLibrary, key: &str) -> Result<(AnyMedium, Bounds), Failure>;
-}
-
-impl Ruled for MediumSpec {
-    fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        Self::read(node)
-    }
-    fn written(&self) -> Value {
-        Self::written(self)
-    }
-    fn schema() -> Value {
-        json!({ "$ref": "#/$defs/medium" })
-    }
 }
 
 /// A refusal of a profile.

@@ -3,13 +3,12 @@
 use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
-use crate::estimator::{InScene, Unlawful};
+use crate::estimator::InScene;
 use crate::spec::BeamRadianceSpec;
 use fairflight_media::LineThickness;
 use fairflight_paths::transport::World;
 use fairflight_photons::{BeamRadiance, SurfaceLight};
 use fairflight_scene::{Spectrum, Surfaces};
-use std::cell::Cell;
 
 /// The beam radiance estimate whose parameters are checked.
 #[derive(Debug)]
@@ -34,8 +33,7 @@ impl BeamRadiancePlan {
     pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
-        Stage { lights, surfaces, map, .. }: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
+        Stage { lights, surfaces, map, unlawful, .. }: Stage<'s, C>,
     ) -> Result<AnyIntegrator<'s, C>, Failure> {
         let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let world = World::<Seen<'s, M, C, Surfaces<C>>>::new(volume, surfaces, lights);

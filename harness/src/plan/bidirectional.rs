@@ -4,7 +4,7 @@ use super::Tally;
 use super::integrator::{AnyIntegrator, Counts, SceneVolume, Splatted, TileIntegrator};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
-use crate::estimator::{InScene, Unlawful};
+use crate::estimator::InScene;
 use crate::spec::{BidirectionalSpec, ThicknessSpec};
 use fairflight_bidirectional::{
     Bidirectional, Exact, Midpoint, Neglected, Strategy, Subpath, Walking, Weigh, WeightThickness,
@@ -13,7 +13,6 @@ use fairflight_media::{Line, LineThickness, Ray};
 use fairflight_paths::transport::{Types, World};
 use fairflight_scene::{Spectrum, Surfaces};
 use fairflight_sources::{Seeded, UniformSource};
-use std::cell::Cell;
 use std::num::NonZeroU32;
 
 /// Nodes of the midpoint rule where there is no closed form.
@@ -54,9 +53,8 @@ impl BidirectionalPlan {
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
     ) -> AnyIntegrator<'s, C> {
-        let Stage { lights, surfaces, camera, emitters, mean, .. } = stage;
+        let Stage { lights, surfaces, camera, emitters, mean, unlawful, .. } = stage;
         let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let [columns, rows] = camera.resolution().map(f64::from);
         let per_pixel = if self.light_image { f64::from(self.light_paths_per_pixel) } else { 0.0 };

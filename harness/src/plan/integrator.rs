@@ -14,7 +14,6 @@ use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, R
 use fairflight_scene::{Spectrum, Volume};
 use fairflight_sources::Seeded;
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
-use std::cell::Cell;
 
 /// The volume of a scene whose medium has one type.
 pub type SceneVolume<'s, M, C> = Volume<M, &'s AnyPhase, C>;
@@ -288,8 +287,7 @@ impl IntegratorPlan {
         matches!(self, Self::Bidirectional(_))
     }
 
-    /// The integrator in a volume, for one tile. The first look-up that an estimator of transmittance is not defined for is left in
-    /// `unlawful`.
+    /// The integrator in a volume, for one tile.
     ///
     /// # Errors
     /// If the integrator does not fit the lights.
@@ -297,16 +295,15 @@ impl IntegratorPlan {
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
     ) -> Result<AnyIntegrator<'s, C>, Failure> {
-        let lights = stage.lights;
+        let Stage { lights, unlawful, .. } = stage;
         if M::IS_EMPTY {
             // Only integrators that know surfaces have anything to do: all others see the background.
             return Ok(match self {
-                Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
-                Self::Vpl(plan) => plan.on(volume, stage, unlawful),
-                Self::Bidirectional(plan) => plan.on(volume, stage, unlawful),
-                Self::BeamRadiance(plan) => return plan.on(volume, stage, unlawful),
+                Self::PathTracer(plan) => plan.on(volume, stage),
+                Self::Vpl(plan) => plan.on(volume, stage),
+                Self::Bidirectional(plan) => plan.on(volume, stage),
+                Self::BeamRadiance(plan) => return plan.on(volume, stage),
                 _ => plain(Attenuation::new(volume, lights, Regular)),
             });
         }
@@ -324,11 +321,11 @@ impl IntegratorPlan {
                 let splitting = LineSplitting::new(volume, lights, walk.walk(), asked);
                 counting(splitting, |splitting| Counts::cut(splitting.truncated()))
             }
-            Self::SingleScattering(plan) => return plan.on(volume, lights, unlawful),
-            Self::PathTracer(plan) => plan.on(volume, stage, unlawful),
-            Self::Vpl(plan) => plan.on(volume, stage, unlawful),
-            Self::Bidirectional(plan) => plan.on(volume, stage, unlawful),
-            Self::BeamRadiance(plan) => return plan.on(volume, stage, unlawful),
+            Self::SingleScattering(plan) => return plan.on(volume, stage),
+            Self::PathTracer(plan) => plan.on(volume, stage),
+            Self::Vpl(plan) => plan.on(volume, stage),
+            Self::Bidirectional(plan) => plan.on(volume, stage),
+            Self::BeamRadiance(plan) => return plan.on(volume, stage),
         })
     }
 

@@ -70,9 +70,8 @@ impl PathTracerPlan {
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
     ) -> AnyIntegrator<'s, C> {
-        let Stage { lights, surfaces, map, .. } = stage;
+        let Stage { lights, surfaces, map, unlawful, .. } = stage;
         let among = World::<Seen<'s, M, C, Surfaces<C>>>::new(volume, surfaces, lights);
         // Only the path tracer itself has code of its own for a scene without surfaces, unless there is no medium either, which is rare.
         if self.reuse.is_some() {

@@ -1,10 +1,11 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
 use super::integrator::{AnyIntegrator, SceneVolume, admits_majorant, plain};
+use super::transport::Stage;
 use crate::Failure;
 use crate::estimator::{
     ControlSpec, DoubleParticleSpec, EstimatorSpec, InScene, LineIntegralSpec, SamplingSpec, Shadow,
-    SingleParticleSpec, Unlawful,
+    SingleParticleSpec,
 };
 use crate::spec::{SingleScatteringSpec, Strategy};
 use fairflight_collision::{Albedo, CollisionModel, DoubleParticle, SingleParticle, Version};
@@ -13,10 +14,9 @@ use fairflight_paths::single_scattering::{
     Heuristic, LineSampled, Marching, Primary, Sampling, SamplingError, SharedExplorers, SingleScattering,
     Technique, Tracked,
 };
-use fairflight_scene::{Lights, Spectrum};
+use fairflight_scene::Spectrum;
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{Explorers, Interaction, LineIntegral, Offset, RayMarching, Regular, Starts};
-use std::cell::Cell;
 
 /// Single scattering whose parameters are checked.
 #[derive(Debug)]
@@ -100,8 +100,7 @@ impl SingleScatteringPlan {
     pub(super) fn on<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
-        lights: &'s Lights<C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
+        Stage { lights, unlawful, .. }: Stage<'s, C>,
     ) -> Result<AnyIntegrator<'s, C>, Failure> {
         let shadow = self.shadow.worker(unlawful);
         let refuse = |error| Failure::refused(format!("integrator.estimator.sigma_samp: {error}"));

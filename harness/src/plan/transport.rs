@@ -33,6 +33,8 @@ pub struct Stage<'s, C> {
     pub vpls: &'s [Vpl<C>],
     /// The bound of their geometric term.
     pub bound: f64,
+    /// Where the first look-up is left that an estimator of transmittance is not defined for.
+    pub unlawful: &'s Cell<Option<Unlawful>>,
 }
 
 impl<C> Clone for Stage<'_, C> {
@@ -163,14 +165,13 @@ impl VplPlan {
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
-        unlawful: &'s Cell<Option<Unlawful>>,
     ) -> AnyIntegrator<'s, C> {
         let Stage { lights, surfaces, .. } = stage;
         // One with neither surfaces nor a medium is rare, and needs no code of its own.
         if !M::IS_EMPTY && Geometry::surfaces(surfaces).is_empty() {
-            self.among(World::<Seen<'s, M, C, _>>::new(volume, &NoSurfaces, lights), stage, unlawful)
+            self.among(World::<Seen<'s, M, C, _>>::new(volume, &NoSurfaces, lights), stage)
         } else {
-            self.among(World::<Seen<'s, M, C, _>>::new(volume, surfaces, lights), stage, unlawful)
+            self.among(World::<Seen<'s, M, C, _>>::new(volume, surfaces, lights), stage)
         }
     }
 
@@ -178,7 +179,6 @@ impl VplPlan {
         &'s self,
         world: World<'s, W>,
         stage: Stage<'s, W::Spectrum>,
-        unlawful: &'s Cell<Option<Unlawful>>,
     ) -> AnyIntegrator<'s, W::Spectrum> {
         let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let (component, term) = match self.component {
@@ -187,7 +187,7 @@ impl VplPlan {
             ComponentSpec::Correction => (Component::Correction, Term::Bounded(stage.bound)),
             ComponentSpec::Lost => (Component::Connections, Term::Excess(stage.bound)),
         };
-        let (walk, shadow) = (walk.walk(), shadow.worker(unlawful));
+        let (walk, shadow) = (walk.walk(), shadow.worker(stage.unlawful));
         let gather = Gather { world, vpls: stage.vpls, term, heuristic: *heuristic, walk, shadow };
         let correction = self.compensation.as_ref().map(|(options, mean)| Compensation::new(*options, mean));
         let pairing = correction.as_ref().map_or(Pairing::Every, Compensation::pairing);

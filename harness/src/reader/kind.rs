@@ -296,7 +296,7 @@ macro_rules! kind {
 /// Defines the list of all kinds of a thing: an enum, its reader and writer, its names.
 #[macro_export]
 macro_rules! registry {
-    ($(#[$doc:meta])* $Name:ident $(: $Trait:path)? { $($Variant:ident($Kind:ty)),+ $(,)? }) => {
+    ($(#[$doc:meta])* $Name:ident $(: $Trait:path)? $(as $definition:literal)? { $($Variant:ident($Kind:ty)),+ $(,)? }) => {
         $(#[$doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub enum $Name { $(#[doc = concat!("`", stringify!($Kind), "`.")] $Variant($Kind)),+ }
@@ -358,6 +358,18 @@ macro_rules! registry {
         }
 
         $crate::registry!(@object $Name { $($Variant),+ } $($Trait)?);
+
+        $(impl $crate::reader::rule::Ruled for $Name {
+            fn read(node: &$crate::reader::Node<'_>) -> Result<Self, $crate::Failure> {
+                Self::read(node)
+            }
+            fn written(&self) -> serde_json::Value {
+                Self::written(self)
+            }
+            fn schema() -> serde_json::Value {
+                serde_json::json!({ "$ref": concat!("#/$defs/", $definition) })
+            }
+        })?
     };
     (@object $Name:ident { $($Variant:ident),+ }) => {};
     (@object $Name:ident { $($Variant:ident),+ } $Trait:path) => {

@@ -78,8 +78,10 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
         let unlawful = Cell::new(None);
         let Radiant { lights, surfaces, .. } = draw.radiant;
         let (camera, Batch { vpls, map, bound, mean, .. }) = (&draw.plan.camera, batch);
-        let stage = Stage { lights, surfaces, camera, emitters, mean: *mean, map, vpls, bound: *bound };
-        let integrator = draw.plan.integrator.on(&volume, stage, &unlawful);
+        let (mean, bound, unlawful_at) = (*mean, *bound, &unlawful);
+        let stage =
+            Stage { lights, surfaces, camera, emitters, mean, map, vpls, bound, unlawful: unlawful_at };
+        let integrator = draw.plan.integrator.on(&volume, stage);
         let added = integrator.and_then(|mut integrator| work(&mut *integrator));
         // Before the samples: a look-up that is not finite explains a sample that is not.
         draw.judge(&volume.medium)?;

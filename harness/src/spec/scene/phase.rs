@@ -1,15 +1,13 @@
 //! Phase functions.
 
 use crate::plan::AnyPhase;
-use crate::reader::Node;
-use crate::reader::rule::{Number, Numbers, Ruled};
-use crate::{Failure, kind, registry};
+use crate::reader::rule::{Number, Numbers};
+use crate::{kind, registry};
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, PhaseError, Rayleigh, Schlick, Tabulated};
-use serde_json::{Value, json};
 
 registry! {
     /// The phase function of a medium.
-    PhaseSpec: PhaseKind {
+    PhaseSpec: PhaseKind as "phase" {
         Isotropic(IsotropicSpec),
         Rayleigh(RayleighSpec),
         HenyeyGreenstein(HenyeyGreensteinSpec),
@@ -104,17 +102,5 @@ impl PhaseKind for HazyMieSpec {
         /// Right to 1e-4 of the peak.
         const NODES: usize = 257;
         Tabulated::hazy_mie(NODES).map(AnyPhase::Tabulated)
-    }
-}
-
-impl Ruled for PhaseSpec {
-    fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        Self::read(node)
-    }
-    fn written(&self) -> Value {
-        Self::written(self)
-    }
-    fn schema() -> Value {
-        json!({ "$ref": "#/$defs/phase" })
     }
 }

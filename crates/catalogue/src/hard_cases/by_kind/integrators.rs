@@ -8,7 +8,7 @@ use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, Homogeneous, Line};
 use fairflight_paths::single_scattering::{Sampling, SharedExplorers, SingleScattering, Technique};
-use fairflight_paths::transport::World;
+use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{
     Attenuation, Heuristic, Integrator, LineSplitting, ParticleTracer, PathTracer, Ratio, Uniform, Walk,
 };
@@ -16,7 +16,7 @@ use fairflight_photons::{BeamRadiance, PhotonMap};
 use fairflight_scene::{Background, Camera, Lights, NoSurfaces, Volume};
 use fairflight_sources::{LARGEST_VARIATE, Seeded, UniformSource};
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
-use fairflight_vpl::{Emitters, Gather, Ledger, LightPaths, Term, VplIntegrator};
+use fairflight_vpl::{Emitters, Gather, Ledger, LightPaths, Term, Vpl, VplIntegrator};
 use glam::{DVec3, dvec3};
 
 /// A homogeneous ball around (0, 0, 10).
@@ -117,13 +117,24 @@ fn path_tracer(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> 
         .radiance(line, &mut source)
 }
 
+/// The vertices of one light path.
+fn light_path<W: Types<Spectrum = f64, Sampling = Uniform>>(
+    ball: &Ball,
+    world: World<'_, W>,
+    line: &Line,
+    mut source: &mut dyn UniformSource,
+) -> Vec<Vpl<f64>> {
+    let emitters = Emitters::new(world.lights, &NoSurfaces, world.enclosing_ball(), line.origin);
+    let mut vertices = Vec::new();
+    LightPaths::new(world, &emitters, ball.walk())
+        .trace(1.0, &mut Ledger::empty(), &mut source, |vertex| vertices.push(vertex));
+    vertices
+}
+
 fn vpl(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let (volume, lights) = (ball.volume(), lights());
     let world = World::new(&volume, &NoSurfaces, &lights);
-    let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
-    let mut vpls = Vec::new();
-    LightPaths::new(world, &emitters, ball.walk())
-        .trace(1.0, &mut Ledger::empty(), &mut source, |vpl| vpls.push(vpl));
+    let vpls = light_path(ball, world, line, source);
     let gather = Gather {
         world,
         vpls: &vpls,
@@ -158,11 +169,7 @@ fn bidirectional(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -
 fn beam_radiance(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     let (volume, lights) = (ball.volume(), lights());
     let world = World::new(&volume, &NoSurfaces, &lights);
-    let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
-    let mut vertices = Vec::new();
-    LightPaths::new(world, &emitters, ball.walk())
-        .trace(1.0, &mut Ledger::empty(), &mut source, |vpl| vertices.push(vpl));
-    let map = PhotonMap::new(vertices);
+    let map = PhotonMap::new(light_path(ball, world, line, source));
     BeamRadiance::new(world, (&map, 0.5), ball.walk(), Regular, Heuristic::Balance)
         .expect(LAWFUL)
         .radiance(line, &mut source)

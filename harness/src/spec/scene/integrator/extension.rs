@@ -3,7 +3,7 @@
 use super::MOST;
 use super::vpl::MOST_LIGHT_PATHS;
 use crate::reader::Node;
-use crate::reader::rule::{Rule, Ruled, Whole};
+use crate::reader::rule::{Rule, Whole};
 use crate::{Failure, keys, kind, registry};
 use fairflight_paths::extend::OwnShare;
 use serde_json::{Value, json};
@@ -11,7 +11,7 @@ use std::num::NonZeroU32;
 
 registry! {
     /// A choice of directions.
-    ExtensionSpec {
+    ExtensionSpec as "extension" {
         Guided(GuidedSpec),
         Resampled(ResampledSpec),
     }
@@ -68,17 +68,5 @@ impl Rule<OwnShare> for Share {
     }
     fn schema() -> Value {
         json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 1 })
-    }
-}
-
-impl Ruled for ExtensionSpec {
-    fn read(node: &Node<'_>) -> Result<Self, Failure> {
-        Self::read(node)
-    }
-    fn written(&self) -> Value {
-        Self::written(self)
-    }
-    fn schema() -> Value {
-        json!({ "$ref": "#/$defs/extension" })
     }
 }
