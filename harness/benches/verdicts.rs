@@ -4,7 +4,7 @@
 //! times 1.01 and its z-score by the closed variance, CPU seconds, and the reason. The table on standard error counts them by kind; with
 //! the output of an EARLIER build, it lists what that rejected and this one does not.
 
-#[path = "../tests/program/lawful_runs.rs"]
+#[path = "../program/tests/commands/lawful_runs.rs"]
 mod lawful_runs;
 
 use cpu_time::ThreadTime;

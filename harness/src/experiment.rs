@@ -214,7 +214,9 @@ pub fn analyse(
 /// Relative error beyond which an integral of the variance has not converged: it may well be infinite.
 const DIVERGENCE: f64 = 1e-2;
 
-pub(crate) fn variance_is_known(theory: &Theory) -> bool {
+/// True if the closed form of the variance has converged.
+#[must_use]
+pub fn variance_is_known(theory: &Theory) -> bool {
     // The relative error of a variance of zero is 0/0: no divergence.
     let error = theory.relative_variance_error;
     !theory.log_relative_variance.is_nan() && (error.is_nan() || error <= DIVERGENCE)

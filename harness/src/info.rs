@@ -102,7 +102,11 @@ impl Volume {
     }
 }
 
-pub(crate) fn run(arguments: &InfoArguments, stdout: &mut dyn Write) -> Result<i32, Failure> {
+/// Runs `harness info`; returns the exit code.
+///
+/// # Errors
+/// If the file cannot be read, or the text not be printed.
+pub fn run(arguments: &InfoArguments, stdout: &mut dyn Write) -> Result<i32, Failure> {
     let file = &arguments.file;
     let in_file = |error: &dyn std::fmt::Display| Failure::refused(format!("{}: {error}", file.display()));
     let bytes = std::fs::read(file).map_err(|error| in_file(&error))?;

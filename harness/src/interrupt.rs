@@ -95,7 +95,7 @@ fn request() {
 }
 
 /// True for the caller that asks first, by whom the process ends: it tells that it was interrupted, nobody else does.
-pub(crate) fn ends_here() -> bool {
+pub fn ends_here() -> bool {
     !ENDING.swap(true, Ordering::SeqCst)
 }
 

@@ -7,12 +7,12 @@ use rayon::prelude::*;
 ///
 /// `each` is behind a pointer, so that rayon is compiled once per type of result and not once per loop: for work of microseconds and more. A
 /// task is one number, since some take a thousand times as long as others.
-pub(crate) fn in_parallel<R: Send>(count: usize, each: &(dyn Fn(usize) -> R + Sync)) -> Vec<R> {
+pub fn in_parallel<R: Send>(count: usize, each: &(dyn Fn(usize) -> R + Sync)) -> Vec<R> {
     (0..count).into_par_iter().with_max_len(1).map(each).collect()
 }
 
 /// Returns what `each` makes of 0 to `count` − 1, or the failure of the least of them that fails.
-pub(crate) fn try_in_parallel<R: Send>(
+pub fn try_in_parallel<R: Send>(
     count: usize,
     each: &(dyn Fn(usize) -> Result<R, Failure> + Sync),
 ) -> Result<Vec<R>, Failure> {

@@ -31,7 +31,7 @@ fn builder(prefix: &OsStr, mode: u32) -> Builder<'_, 'static> {
 }
 
 /// A new file with the rights of an ordinary one, into which it will be renamed.
-pub(crate) fn file(parent: &Path, name: &OsStr) -> io::Result<NamedTempFile> {
+pub fn file(parent: &Path, name: &OsStr) -> io::Result<NamedTempFile> {
     let prefix = prefix(name, "partial");
     loop {
         let file = builder(&prefix, 0o666).tempfile_in(parent)?;
@@ -44,7 +44,7 @@ pub(crate) fn file(parent: &Path, name: &OsStr) -> io::Result<NamedTempFile> {
 }
 
 /// A new folder with the rights of an ordinary one, and what keeps it locked: nothing where folders cannot be opened.
-pub(crate) fn folder(parent: &Path, name: &OsStr, what: &str) -> io::Result<(TempDir, Option<File>)> {
+pub fn folder(parent: &Path, name: &OsStr, what: &str) -> io::Result<(TempDir, Option<File>)> {
     let prefix = prefix(name, what);
     loop {
         let folder = builder(&prefix, 0o777).tempdir_in(parent)?;
@@ -57,7 +57,7 @@ pub(crate) fn folder(parent: &Path, name: &OsStr, what: &str) -> io::Result<(Tem
 }
 
 /// Partial files that killed runs left beside the target `name`, each with the lock that keeps others from it.
-pub(crate) fn abandoned(parent: &Path, name: &OsStr, what: &str) -> Vec<(PathBuf, File)> {
+pub fn abandoned(parent: &Path, name: &OsStr, what: &str) -> Vec<(PathBuf, File)> {
     let prefix = prefix(name, what);
     let entries = fs::read_dir(parent).into_iter().flatten().flatten();
     let ours = entries.filter(|entry| {

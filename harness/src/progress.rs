@@ -38,7 +38,7 @@ impl Progress {
     }
 
     /// A bar of `length` steps.
-    pub(crate) fn bar(length: u64, what: &'static str) -> Self {
+    pub fn bar(length: u64, what: &'static str) -> Self {
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} % {eta}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
@@ -46,7 +46,7 @@ impl Progress {
     }
 
     /// Lines about `length` steps.
-    pub(crate) fn lines(length: u64, what: &'static str) -> Self {
+    pub fn lines(length: u64, what: &'static str) -> Self {
         let start = Instant::now();
         let mut lines = Lines { what, done: 0, total: length, start, last: start };
         lines.tell();

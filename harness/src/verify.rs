@@ -14,7 +14,11 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::Write;
 
-pub(crate) fn run(
+/// Runs `harness verify`; returns the exit code.
+///
+/// # Errors
+/// If there is no such kind, or the table cannot be printed.
+pub fn run(
     arguments: &VerifyArguments,
     environment: &Environment,
     stdout: &mut dyn Write,

@@ -1,18 +1,14 @@
 //! The vocabulary of experiments and scenes: all kinds of all things, from their registries; `harness list`, `harness schema`, and the
 //! tables of docs/SPEC.md.
 
-use crate::cli::SchemaArguments;
 use crate::estimator::{ControlSpec, EstimatorSpec};
 use crate::field::{MediumSpec, ProfileSpec};
 use crate::reader::Listed;
 use crate::reader::kind::{Key, object_schema, plain};
 use crate::reader::rule::{Ruled, vector_schema};
-use crate::report::registry::REPORTS;
 use crate::spec::{ColourSpec, ExtensionSpec, IntegratorSpec, LightSpec, MaterialSpec, PhaseSpec, ShapeSpec};
-use crate::{DONE, Failure, print};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
-use std::io::Write;
 
 /// All kinds of one thing.
 pub struct Things {
@@ -163,37 +159,6 @@ fn scene() -> Value {
         ),
         Key::optional("sweep", "One key, with many values: an image for each.", sweep()),
     ])
-}
-
-/// `harness list`.
-pub(crate) fn list(stdout: &mut dyn Write) -> Result<i32, Failure> {
-    let mut list = String::new();
-    let mut entry = |thing: &str, name: &str, keys: &str, about: &str| {
-        let keys = if keys.is_empty() { String::new() } else { format!("{keys}\n{:<39}", "") };
-        let _ = writeln!(list, "{thing:<15}{name:<24}{keys}{}", plain(about));
-    };
-    for (k, kind) in REPORTS.iter().enumerate() {
-        entry(if k == 0 { "reports" } else { "" }, kind.name, "", kind.about);
-    }
-    for things in things() {
-        for (k, kind) in things.kinds.iter().enumerate() {
-            let keys = kind.keys.iter().map(|key| {
-                let words = key.words().map_or_else(String::new, |words| format!(" ({words})"));
-                let name = format!("{}{words}", key.name);
-                if key.optional { format!("[{name}]") } else { name }
-            });
-            let keys = keys.collect::<Vec<_>>().join(", ");
-            entry(if k == 0 { things.title } else { "" }, kind.name, &keys, kind.about);
-        }
-    }
-    print(stdout, &list)?;
-    Ok(DONE)
-}
-
-/// `harness schema`.
-pub(crate) fn print_schema(arguments: SchemaArguments, stdout: &mut dyn Write) -> Result<i32, Failure> {
-    print(stdout, &if arguments.tables { tables() } else { format!("{:#}\n", schema()) })?;
-    Ok(DONE)
 }
 
 /// The part of docs/SPEC.md that is made from the registries: a section for each thing, a table for each kind.

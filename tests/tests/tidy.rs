@@ -92,6 +92,19 @@ fn dependencies_point_one_way() {
 }
 
 #[test]
+fn packages_of_the_harness_point_one_way() {
+    for (package, foreign) in
+        [("harness", ["reports", "program", "document"]), ("harness/reports", ["program"; 3])]
+    {
+        let named = fairflight_dependencies(&repository().join(package).join("Cargo.toml"));
+        assert!(!named.is_empty(), "{package}");
+        for name in foreign {
+            assert!(!named.iter().any(|other| other == name), "{package} must not depend on {name}");
+        }
+    }
+}
+
+#[test]
 fn documents_know_no_crate_of_ours() {
     let manifest = repository().join("harness/document/Cargo.toml");
     assert!(fairflight_dependencies(&manifest).is_empty());
@@ -352,7 +365,7 @@ fn reports_are_generated_and_say_by_what() {
 /// a call of a function of seeds is given begins with no digit and, where it is a string, says a word beside what is put into it.
 #[test]
 fn seeds_of_reports_are_made_from_names() {
-    for folder in ["harness/src/report", "harness/src/comparison", "harness/src/advise"] {
+    for folder in ["harness/reports/src", "harness/src/comparison", "harness/src/advise"] {
         for (path, text) in sources(folder) {
             assert!(!text.contains("derive_seed"), "{} derives a seed from a number", path.display());
             for call in text.split("seed(").skip(1) {

@@ -9,7 +9,7 @@ fn main() -> std::process::ExitCode {
         // The program does its work all the same.
         let _ = writeln!(io::stderr(), "warning: an interrupt may leave temporary files behind: {error}");
     }
-    let code = fairflight_harness::run(
+    let code = fairflight_program::run(
         std::env::args_os(),
         &mut io::stdin().lock(),
         &mut io::stdout().lock(),

@@ -13,7 +13,11 @@ use crate::cli::AdviseArguments;
 use crate::{DONE, Environment, Failure, print};
 use std::io::{Read, Write};
 
-pub(crate) fn run(
+/// Runs `harness advise`; returns the exit code.
+///
+/// # Errors
+/// If the medium cannot be read or measured, or the answer not be printed.
+pub fn run(
     arguments: &AdviseArguments,
     environment: &Environment,
     stdin: &mut dyn Read,

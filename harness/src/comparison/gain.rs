@@ -60,7 +60,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// The 2.5 and 97.5 % quantiles of means of as many values drawn with replacement, `resamples` times (Efron 1979); 0 without values.
-pub(crate) fn bootstrap_mean(values: &[f64], resamples: usize, seed: u64) -> [f64; 2] {
+pub fn bootstrap_mean(values: &[f64], resamples: usize, seed: u64) -> [f64; 2] {
     if values.is_empty() {
         return [0.0; 2];
     }

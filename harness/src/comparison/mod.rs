@@ -12,6 +12,6 @@ mod rays;
 pub use bout::{Bout, Effort, Pooled, fight, pooled};
 pub use contest::{Contest, bouts_of, contest, facts, facts_of};
 pub use entrant::{Entrant, Facts, entrants, others};
-pub(crate) use gain::bootstrap_mean;
+pub use gain::bootstrap_mean;
 pub use gain::{Gain, Unit, gain};
 pub use rays::{RaySet, TestRay, chords};

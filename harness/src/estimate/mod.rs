@@ -21,7 +21,11 @@ struct Outcome {
     unsound: bool,
 }
 
-pub(crate) fn run(
+/// Runs `harness estimate`; returns the exit code.
+///
+/// # Errors
+/// If the experiment cannot be read or run, or the result not be printed.
+pub fn run(
     arguments: &EstimateArguments,
     environment: &Environment,
     stdin: &mut dyn Read,

@@ -31,16 +31,20 @@ use crate::result::SweepPoint;
 use crate::spec::{Request, SceneOverrides};
 use crate::{DONE, Environment, Failure, INTERRUPTED};
 use output::Targets;
-pub(crate) use painting::{Painting, moments};
+pub use painting::{Painting, moments};
 use passes::{EarlyEnd, End};
 use points::{points, reference, within_budget};
 use rendering::Rendering;
 use statistics::Statistics;
-pub(crate) use statistics::{Moments, StrategyShare};
+pub use statistics::{Moments, StrategyShare};
 use std::io::{Read, Write};
 use std::sync::OnceLock;
 
-pub(crate) fn run(
+/// Runs `harness render`; returns the exit code.
+///
+/// # Errors
+/// If the scene cannot be read or rendered, or an image not be written.
+pub fn run(
     arguments: &RenderArguments,
     environment: &Environment,
     stdin: &mut dyn Read,

@@ -183,7 +183,14 @@ fn put(files: Vec<Prepared>) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::names;
+
+    /// The names in a folder, in their order.
+    fn names(folder: &Path) -> Vec<String> {
+        let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
 
     #[test]
     fn nothing_is_there_before_it_is_put() {

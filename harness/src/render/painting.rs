@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// An image that is being drawn on the threads of the current pool.
 #[derive(Debug)]
-pub(crate) struct Painting<'p> {
+pub struct Painting<'p> {
     plan: &'p ScenePlan,
     canvases: Canvases<'p>,
     samples: u32,
@@ -26,7 +26,7 @@ enum Canvases<'p> {
 
 impl<'p> Painting<'p> {
     /// No sample yet.
-    pub(crate) fn new(plan: &'p ScenePlan) -> Self {
+    pub fn new(plan: &'p ScenePlan) -> Self {
         let (resolution, seed) = (plan.camera.resolution(), plan.seed);
         let groups = || plan.integrator.groups();
         let canvases = match &plan.spectra {
@@ -41,7 +41,7 @@ impl<'p> Painting<'p> {
     }
 
     /// True if all samples of the plan are drawn.
-    pub(crate) fn is_complete(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         self.samples >= self.plan.samples_per_pixel
     }
 
@@ -49,7 +49,7 @@ impl<'p> Painting<'p> {
     ///
     /// # Errors
     /// If a look-up is not lawful, or a sample not finite. The painting is then of no use.
-    pub(crate) fn add_pass(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
+    pub fn add_pass(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
         self.add(1, advance)
     }
 
@@ -57,7 +57,7 @@ impl<'p> Painting<'p> {
     ///
     /// # Errors
     /// The errors of [`add_pass`](Self::add_pass).
-    pub(crate) fn complete(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
+    pub fn complete(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
         let batches = self.plan.integrator.draws_in_batches();
         while !self.is_complete() {
             self.add(if batches { 1 } else { self.plan.samples_per_pixel - self.samples }, advance)?;
@@ -85,7 +85,7 @@ impl<'p> Painting<'p> {
     }
 
     /// Statistics of the samples so far.
-    pub(crate) fn moments(&self) -> Moments {
+    pub fn moments(&self) -> Moments {
         let batches = self.plan.integrator.draws_in_batches();
         match &self.canvases {
             Canvases::Gray(_, canvas) => canvas.drawn(batches).into(),
@@ -111,7 +111,7 @@ fn add<C: Spectrum>(
 ///
 /// # Errors
 /// If a look-up is not lawful, or a sample not finite.
-pub(crate) fn moments(plan: &ScenePlan, advance: &(dyn Fn(u64) + Sync)) -> Result<Moments, Failure> {
+pub fn moments(plan: &ScenePlan, advance: &(dyn Fn(u64) + Sync)) -> Result<Moments, Failure> {
     let mut painting = Painting::new(plan);
     painting.complete(advance)?;
     Ok(painting.moments())

@@ -117,7 +117,7 @@ pub(super) struct PhotonMaps {
 
 /// Light that one strategy found, weighted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct StrategyShare {
+pub struct StrategyShare {
     /// Vertices from a light; null for all strategies of longer paths than those that are told.
     pub s: Option<u32>,
     /// Vertices from the camera.
@@ -140,7 +140,7 @@ pub(super) struct Efficiency {
 
 /// Moments of the samples, read by all writers.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Moments {
+pub struct Moments {
     channels: usize,
     /// Samples per pixel.
     samples: u32,
@@ -187,22 +187,22 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
 
 impl Moments {
     /// The mean radiance of each pixel, row by row from the top.
-    pub(crate) fn means(&self) -> &[[f64; 3]] {
+    pub fn means(&self) -> &[[f64; 3]] {
         &self.means
     }
 
     /// The mean over pixels and channels of the variance of one sample; `None` for one sample per pixel.
-    pub(crate) fn variance(&self) -> Option<f64> {
+    pub fn variance(&self) -> Option<f64> {
         self.variance
     }
 
     /// Look-ups of the medium.
-    pub(crate) fn lookups(&self) -> u64 {
+    pub fn lookups(&self) -> u64 {
         self.cost.lookups
     }
 
     /// CPU seconds over all threads.
-    pub(crate) fn cpu_seconds(&self) -> f64 {
+    pub fn cpu_seconds(&self) -> f64 {
         self.cost.cpu_seconds
     }
 
@@ -313,7 +313,7 @@ impl Moments {
     }
 
     /// Light by the strategies that found some.
-    pub(crate) fn strategies(&self) -> Vec<StrategyShare> {
+    pub fn strategies(&self) -> Vec<StrategyShare> {
         let total: f64 = self.strategies.iter().map(|found| found.mean).sum();
         let told = Tally::strategies().zip(&self.strategies).filter(|(_, found)| found.mean != 0.0);
         told.map(|(strategy, found)| StrategyShare {
@@ -326,23 +326,23 @@ impl Moments {
     }
 
     /// The share of compensation vertices that lay where something was lost; `None` if none was tried.
-    pub(crate) fn compensation_share(&self) -> Option<f64> {
+    pub fn compensation_share(&self) -> Option<f64> {
         let Spent { compensation_tried, compensation_inside, .. } = self.cost;
         (compensation_tried > 0).then(|| compensation_inside as f64 / compensation_tried as f64)
     }
 
     /// CPU seconds of light paths, a part of all.
-    pub(crate) fn light_path_seconds(&self) -> f64 {
+    pub fn light_path_seconds(&self) -> f64 {
         self.cost.light_path_seconds
     }
 
     /// Virtual point lights per set.
-    pub(crate) fn lights_per_set(&self) -> f64 {
+    pub fn lights_per_set(&self) -> f64 {
         self.cost.vpls as f64 / f64::from(self.samples)
     }
 
     /// Samples per pixel.
-    pub(crate) fn samples(&self) -> u32 {
+    pub fn samples(&self) -> u32 {
         self.samples
     }
 

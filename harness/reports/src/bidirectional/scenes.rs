@@ -1,0 +1,66 @@
+//! The scenes of the report: those of the repository, in gray.
+
+use crate::replicas::Subject;
+use crate::run::Run;
+use fairflight_harness::Failure;
+
+/// A scene of which bidirectional path tracing is to show something.
+#[derive(Debug)]
+pub(super) struct Scene {
+    pub(super) id: &'static str,
+    /// Property of the scene, in words.
+    pub(super) words: &'static str,
+    json: &'static str,
+    /// Exposure of its images.
+    pub(super) exposure: f64,
+    /// True if light is indirect there, where lafortune-1996 expects a gain.
+    pub(super) is_indirect: bool,
+}
+
+pub(super) const SCENES: [Scene; 5] = [
+    Scene {
+        id: "bulb",
+        words: "a lamp in a globe of glass lights a hazy room: no connection reaches it",
+        json: include_str!("../../../scenes/bulb.json"),
+        exposure: 1.0,
+        is_indirect: true,
+    },
+    Scene {
+        id: "volume-caustic",
+        words: "a ball of glass under a small lamp, in haze",
+        json: include_str!("../../../scenes/volume-caustic.json"),
+        exposure: 2.0,
+        is_indirect: true,
+    },
+    Scene {
+        id: "door",
+        words: "smoke in two rooms; the lamp of one lights the other through a slit",
+        json: include_str!("../../../scenes/door.json"),
+        exposure: 8.0,
+        is_indirect: true,
+    },
+    Scene {
+        id: "fixture",
+        words: "a lamp in a black tube that is open towards the ceiling, in haze",
+        json: include_str!("../../../scenes/fixture.json"),
+        exposure: 1.0,
+        is_indirect: true,
+    },
+    Scene {
+        id: "mixed",
+        words: "haze over a floor under a lamp that lights all of it: direct light",
+        json: include_str!("../../../scenes/mixed.json"),
+        exposure: 1.0,
+        is_indirect: false,
+    },
+];
+
+/// A point light in haze.
+pub(super) const POINT: &str = include_str!("../../../scenes/point-in-haze.json");
+
+impl Scene {
+    /// The scene, square.
+    pub(super) fn subject(&self, run: &Run<'_>) -> Result<Subject, Failure> {
+        Subject::gray(self.json, [run.quick_or(12, 32); 2])
+    }
+}

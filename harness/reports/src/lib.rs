@@ -1,0 +1,23 @@
+//! Reports: named studies that are measured, made into documents, and written as folders.
+
+mod bidirectional;
+mod command;
+mod estimators;
+mod folder;
+mod free_flight;
+mod laws;
+mod looks;
+mod measured;
+mod options;
+mod particle_tracing;
+mod registry;
+mod replicas;
+mod run;
+mod single_scattering;
+mod speed;
+mod stability;
+mod standard;
+mod virtual_lights;
+
+pub use command::{ReportArguments, run as report};
+pub use registry::{REPORTS, ReportKind};

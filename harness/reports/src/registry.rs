@@ -1,0 +1,96 @@
+//! The reports that there are, by name.
+
+use super::run::{Finished, Run};
+use super::{
+    bidirectional, estimators, free_flight, particle_tracing, single_scattering, standard, virtual_lights,
+};
+use fairflight_harness::Failure;
+
+/// A report that can be asked for.
+pub struct ReportKind {
+    /// Its name on the command line, and of its folder.
+    pub name: &'static str,
+    /// Subject, for `harness list`.
+    pub about: &'static str,
+    /// Whether it takes a volume.
+    pub takes_volume: bool,
+    /// Times on two quiet cores, full and quick, as last measured.
+    pub takes: [&'static str; 2],
+    /// Measures it, on the threads of the current pool.
+    pub(crate) study: fn(&Run<'_>) -> Result<Finished, Failure>,
+}
+
+/// All reports; the first is the default.
+pub const REPORTS: [ReportKind; 7] = [
+    ReportKind {
+        name: "standard",
+        about: "transmittance estimators against their closed forms",
+        takes_volume: true,
+        takes: ["36 s", "12 s"],
+        study: standard::study,
+    },
+    ReportKind {
+        name: "particle-tracing",
+        about: "multiple scattering over the sampling extinction: three versions, noise, growth, speed",
+        takes_volume: false,
+        takes: ["130 s", "11 s"],
+        study: |run| Finished::of(particle_tracing::document(run)?),
+    },
+    ReportKind {
+        name: "single-scattering",
+        about: "a point light in a medium: all methods at equal look-ups, speed against error",
+        takes_volume: false,
+        takes: ["80 s", "4 s"],
+        study: |run| Finished::of(single_scattering::document(run)?),
+    },
+    ReportKind {
+        name: "free-flight",
+        about: "distance samplers by their law, algorithm 2 from homogeneous to inhomogeneous, two wavelengths",
+        takes_volume: false,
+        takes: ["108 s", "15 s"],
+        study: |run| Finished::of(free_flight::document(run)?),
+    },
+    ReportKind {
+        name: "vpl",
+        about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
+        takes_volume: false,
+        takes: ["3.6 min", "24 s"],
+        study: |run| Finished::of(virtual_lights::document(run)?),
+    },
+    ReportKind {
+        name: "bidirectional",
+        about: "paths joined from both ends: gain over path tracing, strategies, a point light in haze, weights",
+        takes_volume: false,
+        takes: ["3.2 min", "9 s"],
+        study: |run| Finished::of(bidirectional::document(run)?),
+    },
+    ReportKind {
+        name: "estimators",
+        about: "all estimators of transmittance: the canonical plane, random rays, speed against error, which to use",
+        takes_volume: true,
+        takes: ["5 min", "47 s"],
+        study: |run| Finished::of(estimators::document(run)?),
+    },
+];
+
+/// The reports with their times, for `harness report --help`.
+pub(crate) fn times() -> String {
+    let line = |kind: &ReportKind| {
+        let [full, quick] = kind.takes;
+        format!("  {:<18} {full:>9} {quick:>13}   {}\n", kind.name, kind.about)
+    };
+    let lines: String = REPORTS.iter().map(line).collect();
+    format!(
+        "Reports, and how long they take on two quiet cores:\n\n  {:<18} {:>9} {:>13}\n{lines}",
+        "", "full", "with --quick"
+    )
+}
+
+/// The report of this name.
+pub(crate) fn find(name: &str) -> Result<&'static ReportKind, Failure> {
+    let known = REPORTS.each_ref().map(|kind| kind.name).join(", ");
+    REPORTS
+        .iter()
+        .find(|kind| kind.name == name)
+        .ok_or_else(|| Failure::refused(format!("report {name}: must be one of {known}")))
+}
