@@ -1,38 +1,37 @@
-//! The harness: the only program of the project, and its only input and output.
+//! The harness: what can be asked for, and what comes of it. The only input and output of the project; `fairflight-reports` makes studies
+//! of it, `fairflight-program` the command line.
 //!
 //! Data flows one way: a [`spec`] says what is asked for, a [`plan`] makes it fit together, [`measure`](mod@measure) draws, the
-//! analysis of an [`experiment`] compares with the [`reference`](mod@reference), and writers turn the [`result`] into JSON, CSV, Markdown,
-//! plots and a page. Writers read results only.
-//!
-//! [`run`] is the whole program: arguments, streams, exit code.
+//! analysis of an [`experiment`] compares with the [`reference`](mod@reference), and writers turn the [`result`] into JSON, CSV, tables
+//! and images. Writers read results only.
+
+mod environment;
+mod failure;
+mod input;
+mod table;
 
 pub mod advise;
-pub mod cli;
-mod environment;
-pub mod estimate;
-mod failure;
-pub mod info;
-mod input;
-pub mod parallel;
-pub mod partial;
-pub mod render;
-mod table;
-pub mod verify;
-
 pub mod budget;
+pub mod cli;
 pub mod comparison;
+pub mod estimate;
 pub mod estimator;
 pub mod experiment;
 pub mod field;
 pub mod image;
+pub mod info;
 pub mod interrupt;
 pub mod measure;
+pub mod parallel;
+pub mod partial;
 pub mod plan;
 pub mod progress;
 pub mod reader;
 pub mod reference;
+pub mod render;
 pub mod result;
 pub mod spec;
+pub mod verify;
 pub mod vocabulary;
 pub mod volume;
 
