@@ -4,26 +4,34 @@ use super::{Profile, subjects};
 use crate::hard_cases::{HardCase, Outcome};
 use fairflight_freeflight::Flight;
 use fairflight_media::Extinction;
-use fairflight_sources::{LARGEST_VARIATE, UniformSource};
+use fairflight_sources::{LARGEST_VARIATE, Seeded, UniformSource};
 
-/// One end of the lattice for a while, then its middle: a walk of flights of length 0 would never end, nor would a roulette that
-/// always goes on.
+/// One end of the lattice for a while, then variates like any other: a walk of flights of length 0 would never end, nor would a roulette
+/// that always goes on.
 pub(crate) struct End {
-    pub(crate) variate: f64,
-    pub(crate) left: u32,
+    variate: f64,
+    left: u32,
+    then: Seeded,
+}
+
+impl End {
+    /// `left` times `variate`, and then the stream of `left`.
+    pub(crate) fn new(variate: f64, left: u32) -> Self {
+        Self { variate, left, then: Seeded::new(left.into()) }
+    }
 }
 
 impl UniformSource for End {
     fn next_uniform(&mut self) -> f64 {
         if self.left == 0 {
-            return 0.5;
+            return self.then.next_uniform();
         }
         self.left -= 1;
         self.variate
     }
 }
 
-/// Row 14 of one kind: the variates at either end of the lattice, and then their middle.
+/// Row 14 of one kind: the variates at either end of the lattice, and then any.
 pub(super) fn at_the_ends(kind: &'static str) -> HardCase {
     let title = format!("the uniform variates 0 and 1 - 2^-53: {kind}");
     let evaluate = move || {
@@ -36,7 +44,7 @@ pub(super) fn at_the_ends(kind: &'static str) -> HardCase {
             for (profile, variate) in
                 profiles.iter().flat_map(|profile| [(profile, 0.0), (profile, LARGEST_VARIATE)])
             {
-                if !(1..5).all(|left| (subject.draw)(profile, &mut End { variate, left })) {
+                if !(1..5).all(|left| (subject.draw)(profile, &mut End::new(variate, left))) {
                     return Outcome::said(false, format!("{}, variates of {variate}", subject.name));
                 }
             }

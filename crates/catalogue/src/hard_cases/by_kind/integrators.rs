@@ -215,7 +215,7 @@ fn at_the_ends(index: usize) -> Outcome {
     let ball = Ball { sigma_t: 1.0, radius: 1.0, albedo: 0.8, anisotropy: 0.5, rate: 1.5 };
     for variate in [0.0, LARGEST_VARIATE] {
         for left in 1..5 {
-            let found = radiance(&ball, &THROUGH, &mut End { variate, left });
+            let found = radiance(&ball, &THROUGH, &mut End::new(variate, left));
             if !found.is_finite() {
                 return Outcome::said(false, format!("{found} for {left} variates of {variate}"));
             }
