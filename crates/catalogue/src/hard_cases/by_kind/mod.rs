@@ -142,6 +142,12 @@ fn put_through(row: &Row, subjects: &[Subject], run: Run) -> Outcome {
             tried.map(move |(name, profile, setting)| (subject, name.as_str(), profile, setting))
         })
         .collect();
+    if parts.is_empty() {
+        return Outcome::said(
+            false,
+            "tried on no profile of this row: admit one in `tried_where`, or name the row in `spared` with the reason",
+        );
+    }
     let share = run.alpha / parts.len() as f64;
     let (mut judged, mut refusals, mut wrong, mut untestable) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for (index, (subject, name, profile, setting)) in parts.into_iter().enumerate() {
@@ -171,4 +177,18 @@ fn put_through(row: &Row, subjects: &[Subject], run: Run) -> Outcome {
         if passes { told.into_iter().flatten().collect::<Vec<_>>().join(", ") } else { wrong.join("; ") };
     let refused = passes && !refusals.is_empty();
     Outcome { refused, evidence: CheckResult::of_all(judged), ..Outcome::said(passes, text) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_that_tries_nothing_says_what_to_do() {
+        let row = rows::rows().remove(0);
+        let shy = |subject: Subject| subject.tried_where(|_| false);
+        let subjects: Vec<Subject> = subjects().into_iter().take(2).map(shy).collect();
+        let outcome = put_through(&row, &subjects, WATCHED);
+        assert!(!outcome.passes && outcome.ours.contains("`spared`"), "{}", outcome.ours);
+    }
 }
