@@ -40,6 +40,20 @@ impl Measured {
         Self::multiplied(value, (quantile(values) * mean_and_error(&logarithms).1).exp())
     }
 
+    /// A statistic of two groups of independent elements, by the jackknife: `of` leaves out one element of either, or none. Student's law of
+    /// the smaller group.
+    pub(super) fn jackknife(sizes: [usize; 2], of: impl Fn([Option<usize>; 2]) -> f64) -> Self {
+        let squares = [0, 1].map(|group| {
+            let without = |k| of(if group == 0 { [Some(k), None] } else { [None, Some(k)] });
+            let scatter = Moments::from_slice(&(0..sizes[group]).map(without).collect::<Vec<_>>());
+            let others = sizes[group] as f64 - 1.0;
+            others * others / (others + 1.0) * scatter.sample_variance().unwrap_or(f64::NAN)
+        });
+        let degrees = sizes[0].min(sizes[1]).saturating_sub(1).max(1) as u64;
+        let quantile = student_two_sided_quantile(MISSES, degrees);
+        Self::within(of([None; 2]), quantile * squares.iter().sum::<f64>().sqrt())
+    }
+
     /// The variance of independent normal numbers. That of its logarithm is 2/(n − 1).
     pub(super) fn variance(values: &[f64]) -> Self {
         let variance = Moments::from_slice(values).sample_variance().unwrap_or(f64::NAN);
@@ -161,6 +175,23 @@ mod tests {
         assert!((high / 2.5 / factor - 1.0).abs() < 1e-3 && (2.5 / low / factor - 1.0).abs() < 1e-3);
         assert!(Measured::positive(&[1.0, 0.0]).interval[0].is_nan());
         assert!(Measured::positive(&[f64::NAN; 2]).value.is_nan());
+    }
+
+    #[test]
+    fn the_jackknife_of_a_difference_of_means_is_its_error() {
+        let groups = [vec![1.0, 2.0, 6.0], vec![0.5, 0.0, 4.0, 2.5]];
+        let mean = |group: usize, without: Option<usize>| {
+            let kept = groups[group].iter().enumerate().filter(|(k, _)| Some(*k) != without);
+            let kept: Vec<f64> = kept.map(|(_, &x)| x).collect();
+            kept.iter().sum::<f64>() / kept.len() as f64
+        };
+        let found = Measured::jackknife([3, 4], |[a, b]| mean(0, a) - mean(1, b));
+        // Sample variances 7 and 41/12 over 3 and 4; t of two degrees is 4.3027.
+        let half = 4.3027 * (7.0_f64 / 3.0 + 41.0 / 48.0).sqrt();
+        assert!(
+            (found.value - 1.25).abs() < 1e-12 && (found.interval[1] - 1.25 - half).abs() < 1e-3,
+            "{found:?}"
+        );
     }
 
     #[test]

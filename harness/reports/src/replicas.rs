@@ -9,6 +9,7 @@ use fairflight_harness::render::{Moments, StrategyShare, moments};
 use fairflight_harness::spec::{SceneOverrides, SceneSpec};
 use fairflight_scene::EnvironmentMap;
 use fairflight_sources::named_seed;
+use fairflight_stats as stats;
 use serde_json::{Value, json};
 
 /// A scene of a report: the JSON that `harness render` takes, and perhaps a map that lights it.
@@ -167,6 +168,29 @@ impl Replicas {
             })
             .collect();
         Measured::positive(&errors)
+    }
+
+    /// A function of the squared bias and of the variance of one image, means over pixels, against images of another integrator without a bias. The
+    /// noise of both is taken off, and its interval is that of both.
+    pub(super) fn bias_and_variance(&self, exact: &Self, function: impl Fn([f64; 2]) -> f64) -> Measured {
+        let pixels = self.first().means().len();
+        // Mean of a pixel, its squared error, and the variance of one image.
+        let moments = |of: &Self, without: Option<usize>, pixel: usize| {
+            let kept = of.images.iter().enumerate().filter(|(k, _)| Some(*k) != without);
+            let values: stats::Moments = kept.map(|(_, image)| image.means()[pixel][0]).collect();
+            let variance = values.sample_variance().unwrap_or(f64::NAN);
+            [values.mean().unwrap_or(f64::NAN), variance / values.count() as f64, variance]
+        };
+        Measured::jackknife([self.images.len(), exact.images.len()], |[one, other]| {
+            let mut sums = [0.0; 2];
+            for pixel in 0..pixels {
+                let [mean, error, variance] = moments(self, one, pixel);
+                let [right, its_error, _] = moments(exact, other, pixel);
+                sums[0] += (mean - right).powi(2) - error - its_error;
+                sums[1] += variance;
+            }
+            function(sums.map(|sum| sum / pixels as f64))
+        })
     }
 
     /// The first image: what one sees.

@@ -7,7 +7,7 @@ use crate::Failure;
 use crate::estimator::InScene;
 use crate::spec::{BidirectionalSpec, ThicknessSpec};
 use fairflight_bidirectional::{
-    Bidirectional, Exact, Midpoint, Neglected, Strategy, Subpath, Walking, Weigh, WeightThickness,
+    Bidirectional, Exact, Found, Midpoint, Neglected, Strategy, Subpath, Walking, Weigh, WeightThickness,
 };
 use fairflight_media::{Line, LineThickness, Ray};
 use fairflight_paths::transport::{Types, World};
@@ -30,6 +30,7 @@ pub struct BidirectionalPlan {
     light_paths_per_pixel: u32,
     light_image: bool,
     strategies: Option<Vec<Strategy>>,
+    weighted: bool,
 }
 
 impl BidirectionalPlan {
@@ -45,6 +46,7 @@ impl BidirectionalPlan {
             light_paths_per_pixel: spec.light_paths_per_pixel,
             light_image: spec.light_image,
             strategies: spec.strategies.clone(),
+            weighted: spec.weighted,
         })
     }
 
@@ -108,10 +110,10 @@ impl<W: Types<Medium: LineThickness>> TileIntegrator<W::Spectrum> for OfTile<'_,
         let mut radiance = self.trace_light(&mut own);
         let Self { plan, integrator, light, found, bad } = self;
         integrator.strategies(line, light, &mut own, |_, one| {
-            if plan.is_asked_for(one.strategy) {
-                radiance += one.value;
-                found.tally.add(one.strategy, one.value.mean());
-                if !one.value.is_finite() {
+            if let Some(value) = plan.counted(&one) {
+                radiance += value;
+                found.tally.add(one.strategy, value.mean());
+                if !value.is_finite() {
                     bad.get_or_insert(one.strategy);
                 }
             }
@@ -147,14 +149,12 @@ impl<W: Types<Medium: LineThickness>> OfTile<'_, W> {
         if plan.light_image {
             for index in 0..light.steps.len() {
                 let Some((pixel, one)) = integrator.splat(light, index, source) else { continue };
-                if !plan.is_asked_for(one.strategy) {
-                    continue;
-                }
-                if one.value.is_finite() {
-                    found.splats.push((pixel, one.value));
-                    found.tally.add(one.strategy, one.value.mean());
+                let Some(value) = plan.counted(&one) else { continue };
+                if value.is_finite() {
+                    found.splats.push((pixel, value));
+                    found.tally.add(one.strategy, value.mean());
                 } else {
-                    lost += one.value;
+                    lost += value;
                     bad.get_or_insert(one.strategy);
                 }
             }
@@ -164,7 +164,11 @@ impl<W: Types<Medium: LineThickness>> OfTile<'_, W> {
 }
 
 impl BidirectionalPlan {
-    fn is_asked_for(&self, strategy: Strategy) -> bool {
-        self.strategies.as_ref().is_none_or(|asked| asked.contains(&strategy))
+    /// Light that counts of what a strategy found: none if it is not asked for. What a weight of 0 has taken is not given back.
+    #[inline]
+    fn counted<C: Spectrum>(&self, found: &Found<C>) -> Option<C> {
+        let is_asked_for = self.strategies.as_ref().is_none_or(|asked| asked.contains(&found.strategy));
+        let is_whole = self.weighted || found.weight < f64::MIN_POSITIVE;
+        is_asked_for.then(|| if is_whole { found.value } else { found.value * found.weight.recip() })
     }
 }

@@ -97,8 +97,11 @@ impl<C: Spectrum> Draw<'_, C> {
         let stream = derive_seed(derive_seed(self.seed, MAP_STREAM), pass as u64);
         let drawn = (stream, paths, 1.0 / f64::from(paths));
         let traced = self.light_paths(&self.radiant.surfaces, medium, (transport, None), emitters, drawn)?;
-        let spent = Spent { vpls: traced.vpls.len() as u64, ..traced.spent };
-        Ok((Batch { map: PhotonMap::new(traced.vpls), ..Batch::none() }, spent))
+        let (clock, vpls) = (ThreadTime::now(), traced.vpls.len() as u64);
+        let map = PhotonMap::new(traced.vpls);
+        let cpu_seconds = clock.elapsed().as_secs_f64();
+        let sorted = Spent { vpls, cpu_seconds, light_path_seconds: cpu_seconds, ..Spent::default() };
+        Ok((Batch { map, ..Batch::none() }, traced.spent.and(sorted)))
     }
 
     /// Traces light paths in chunks with streams of their own, put together in order.

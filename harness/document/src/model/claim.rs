@@ -56,6 +56,17 @@ impl ClaimVerdict {
         if holds { Self::Holds } else { Self::DoesNotHold }
     }
 
+    /// The verdict of a criterion that each of several cases meets or not.
+    #[must_use]
+    pub fn of_cases(cases: impl IntoIterator<Item = bool>) -> Self {
+        let cases: Vec<bool> = cases.into_iter().collect();
+        match [true, false].map(|is_met| cases.contains(&is_met)) {
+            [true, false] => Self::Holds,
+            [true, true] => Self::HoldsUnder,
+            _ => Self::DoesNotHold,
+        }
+    }
+
     /// The verdict in words.
     #[must_use]
     pub fn words(self) -> &'static str {

@@ -116,6 +116,26 @@ fn strategies_are_told_and_their_parts_are_the_whole() {
 }
 
 #[test]
+fn strategies_without_weights_find_the_same_light_alone() {
+    let of = |strategy: [u32; 2], weighted: bool| {
+        let keys = json!({ "strategies": [strategy], "weighted": weighted });
+        let mut scene = mixed(&bidirectional(keys));
+        // Without the mirror there is no path that only chance finds.
+        scene["surfaces"].as_array_mut().unwrap().truncate(2);
+        scene
+    };
+    // Paths of three edges: by a point of the lamp, by a connection, on the image.
+    let alone = [[1, 3], [2, 2], [3, 1]].map(|strategy| mean(&of(strategy, false), "4000"));
+    agree(alone[1], alone[0], 0.02);
+    agree(alone[2], alone[0], 0.02);
+    let parts = [[0, 4], [1, 3], [2, 2], [3, 1]].map(|strategy| mean(&of(strategy, true), "1000"));
+    let error = parts.iter().map(|[_, error]| error * error).sum::<f64>().sqrt();
+    agree([parts.iter().map(|[mean, _]| mean).sum(), error], alone[0], 0.02);
+    let told = statistics(&of([1, 3], false), &["--samples-per-pixel", "2"]);
+    assert!(told["warnings"].to_string().contains("strategies would find it alone"));
+}
+
+#[test]
 fn light_straight_into_glass_is_followed_if_that_is_asked_for() {
     let lit = |point_caustics: bool| {
         let mut scene = bulb(&bidirectional(json!({ "point_caustics": point_caustics })));
@@ -155,6 +175,7 @@ fn keys_that_are_refused() {
     }
     refuses(json!({ "strategies": [] }), &["integrator.strategies", "all"]);
     refuses(json!({ "strategies": [[0, 2], [1, 1]] }), &["integrator.strategies.1", "[0, 2] alone"]);
+    refuses(json!({ "weighted": false }), &["integrator.weighted", "needs a list of strategies"]);
     refuses(json!({ "strategies": [[2, 0]] }), &["integrator.strategies.0", "t of at least 1"]);
     refuses(json!({ "strategies": [[0, 1]] }), &["integrator.strategies.0", "at least 2"]);
     refuses(

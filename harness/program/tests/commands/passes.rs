@@ -1,5 +1,6 @@
 //! `harness render --time-limit`: images that are drawn pass by pass, and may end early.
 
+use crate::bidirectional::mixed;
 use crate::common::{Outcome, harness, timeless};
 use crate::render::{scene, with};
 use serde_json::{Value, json};
@@ -77,6 +78,27 @@ fn the_time_limit_ends_an_image_after_a_whole_pass() {
         assert!(same == image, "another image");
         statistics_of_same["warnings"] = statistics["warnings"].clone();
         assert_eq!(statistics_of_same, statistics);
+    }
+}
+
+#[test]
+fn the_time_limit_ends_whatever_light_paths_share_after_a_whole_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    for integrator in [
+        json!({ "kind": "bidirectional", "connection_roulette": 0.3 }),
+        json!({ "kind": "path_tracer", "extension": { "kind": "guided", "photons": 300, "nearest": 8 } }),
+        json!({ "kind": "path_tracer", "reuse": { "tile": 2 } }),
+        json!({ "kind": "beam_radiance", "photons": 300, "radius": 0.1 }),
+    ] {
+        let scene = mixed(&integrator);
+        let limited = ["--samples-per-pixel", "4000000000", "--time-limit", "0.1"];
+        let (_, image, statistics) = render(&scene, folder.path(), &limited);
+        let drawn = statistics["image"]["samples_per_pixel"].as_u64().unwrap();
+        let warning =
+            format!("the time limit of 0.1 s ended the image after {drawn} of 4000000000 samples per pixel");
+        assert!(statistics["warnings"].to_string().contains(&warning), "{integrator}");
+        let (_, same, _) = render(&scene, folder.path(), &["--samples-per-pixel", &drawn.to_string()]);
+        assert!(same == image, "{integrator}: another image after {drawn}");
     }
 }
 

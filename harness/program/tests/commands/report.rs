@@ -96,7 +96,7 @@ fn the_report_on_virtual_point_lights_keeps_the_expectation() {
     let (results, ledger) = document("vpl", "2");
     assert_eq!(
         ledger.iter().map(|row| row[0].as_str()).collect::<Vec<_>>(),
-        ["E1", "E2", "E3", "E4", "E5", "E6", "R4"]
+        ["E1", "E2", "E3", "E4", "E5", "E6", "E7", "R4"]
     );
     assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
 }
@@ -104,8 +104,8 @@ fn the_report_on_virtual_point_lights_keeps_the_expectation() {
 #[test]
 fn the_report_on_bidirectional_path_tracing_finds_its_gain_and_no_broken_law() {
     let (results, ledger) = document("bidirectional", "2");
-    let [a1, l1, r5] = &ledger[..] else { panic!("{ledger:?}") };
-    assert_eq!([a1, l1, r5].map(|row| row[0].as_str()), ["A1", "L1", "R5"]);
+    let [a1, a2, l1, r5] = &ledger[..] else { panic!("{ledger:?}") };
+    assert_eq!([a1, a2, l1, r5].map(|row| row[0].as_str()), ["A1", "A2", "L1", "R5"]);
     assert_eq!([&a1[1], &r5[1]], ["holds", "holds"], "{a1:?}");
     assert_ne!(l1[1], "holds_under", "{l1:?}");
     assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);

@@ -67,10 +67,15 @@ pub(crate) fn entries(folder: &Path) -> usize {
     fs::read_dir(folder).map_or(0, Iterator::count)
 }
 
-/// Starts an image that never ends, in passes.
+/// Starts the reference scene as an image that never ends, in passes.
 pub(crate) fn endless(resolution: [u32; 2], folder: &Path) -> Running {
     let mut scene = scene();
     scene["camera"]["resolution"] = json!(resolution);
+    endless_of(scene, folder)
+}
+
+/// Starts an image of this scene that never ends, in passes.
+pub(crate) fn endless_of(mut scene: Value, folder: &Path) -> Running {
     scene["samples_per_pixel"] = json!(4_000_000_000_u32);
     let mut child = Running::start(
         Command::new(env!("CARGO_BIN_EXE_harness"))

@@ -1,6 +1,6 @@
 //! A person gives up in the middle of a report or an image. Signals are sent as on Unix.
 
-use crate::common::{Running, endless, entries, names, scene, wait_for};
+use crate::common::{Running, endless, endless_of, entries, names, scene, wait_for};
 use fairflight_harness::image::Image;
 use serde_json::{Value, json};
 use std::fs;
@@ -75,6 +75,46 @@ fn an_image_in_passes_can_be_watched_and_interrupted() {
     assert_eq!(String::from_utf8_lossy(&output.stderr), format!("{ASKED}warning: {warning}\n"));
     assert_eq!(Image::read(&image).expect("it is whole").pixels().len(), 360);
     assert_eq!(names(folder), ["image.pfm", "statistics.json"]);
+}
+
+#[test]
+fn an_interrupt_ends_whatever_light_paths_share_after_a_whole_pass() {
+    let mixed = include_str!("../../../scenes/mixed.json");
+    for integrator in [
+        json!({ "kind": "bidirectional" }),
+        json!({ "kind": "path_tracer", "extension": { "kind": "guided", "photons": 500, "nearest": 8 } }),
+        json!({ "kind": "path_tracer", "reuse": { "tile": 3 } }),
+        json!({ "kind": "beam_radiance", "photons": 500, "radius": 0.1 }),
+    ] {
+        let root = tempfile::tempdir().expect("a temporary folder");
+        let folder = root.path();
+        let mut scene: Value = serde_json::from_str(mixed).expect("a scene of ours");
+        scene["camera"]["resolution"] = json!([20, 18]);
+        scene["integrator"] = integrator.clone();
+        let mut child = endless_of(scene.clone(), folder);
+        wait_for("temporary files", || entries(folder) >= 2);
+        std::thread::sleep(Duration::from_millis(200));
+        send("-INT", &child);
+        wait_for("the end", || child.try_wait().expect("a state").is_some());
+        let output = child.output();
+        assert_eq!(output.status.code(), Some(130), "{integrator}: {output:?}");
+        assert_eq!(names(folder), ["image.pfm", "statistics.json"], "{integrator}");
+        let drawn = statistics(folder)["image"]["samples_per_pixel"].as_u64().expect("a number");
+        let warning = format!("an interrupt ended the image after {drawn} of 4000000000 samples per pixel");
+        assert!(statistics(folder)["warnings"].to_string().contains(&warning), "{integrator}");
+        // The image is that of so many passes.
+        let again = folder.join("again.pfm");
+        let mut same = Running::start(
+            Command::new(env!("CARGO_BIN_EXE_harness"))
+                .args(["render", "-", "--samples-per-pixel", &drawn.to_string(), "--out"])
+                .arg(&again)
+                .stdin(Stdio::piped()),
+        );
+        same.stdin.take().expect("a pipe").write_all(scene.to_string().as_bytes()).expect("it reads");
+        assert!(same.wait().expect("an end").success());
+        let [image, again] = [folder.join("image.pfm"), again].map(|path| fs::read(path).expect("a file"));
+        assert!(image == again, "{integrator}: another image");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::scenes::Scene;
 use crate::measured::Measured;
-use crate::replicas::Replicas;
+use crate::replicas::{Replicas, Subject};
 use crate::run::Run;
 use fairflight_document::{Axis, Cell, Chart, Curve, Gallery, Picture, Section, Table};
 use fairflight_harness::Failure;
@@ -30,66 +30,88 @@ fn methods() -> [(&'static str, Value, u32); 4] {
     ]
 }
 
-/// One method in one scene at its longest image.
+/// The image of a scene that all others are judged by.
+pub(super) struct Exact {
+    subject: Subject,
+    images: Replicas,
+    pixels: Vec<f64>,
+    /// Its own, of a pixel on average.
+    squared_error: f64,
+}
+
+impl Exact {
+    pub(super) fn of(run: &Run<'_>, scene: &Scene) -> Result<Self, Failure> {
+        let subject = scene.subject(run)?;
+        let seed = run.seed(format_args!("{}/reference", scene.id));
+        let long = subject.with("integrator", json!({ "kind": "bidirectional" }));
+        let images = long.measure(run.samples(REFERENCE), (seed, REFERENCES), &run.media)?;
+        run.advance();
+        let (pixels, squared_error) = images.mean();
+        Ok(Self { subject, images, pixels, squared_error })
+    }
+
+    /// Images of a method, of so many samples per pixel.
+    pub(super) fn entry(
+        &self,
+        run: &Run<'_>,
+        (name, integrator): (&'static str, Value),
+        (samples, seed): (u32, u64),
+    ) -> Result<Entry, Failure> {
+        let images =
+            self.subject.with("integrator", integrator).measure(samples, (seed, REPLICAS), &run.media)?;
+        run.advance();
+        let squares = images.squared_difference(&self.pixels, self.squared_error);
+        let (seconds, rays) = (images.seconds(), f64::from(samples) * self.pixels.len() as f64);
+        let [(mean, error), (exact, its_error)] = [&images, &self.images].map(Replicas::mean_of_images);
+        Ok(Entry {
+            name,
+            rmse: squares.map(|square| square.max(0.0).sqrt()),
+            cost: squares.map(|square| square * seconds),
+            seconds: seconds / rays,
+            z: (mean - exact) / error.hypot(its_error),
+            images,
+        })
+    }
+}
+
+/// One method in one scene.
 pub(super) struct Entry {
     pub(super) name: &'static str,
-    pub(super) rmse: Measured,
+    rmse: Measured,
     /// MSE · CPU seconds \[radiance² s\].
     pub(super) cost: Measured,
-    /// Seconds of one sample of a pixel.
-    seconds: f64,
-    z: f64,
-    images: Replicas,
+    /// CPU seconds of one sample of a pixel.
+    pub(super) seconds: f64,
+    pub(super) z: f64,
+    pub(super) images: Replicas,
 }
 
 /// Measurements of one scene: error and CPU time of each method.
 pub(super) struct Compared {
     pub(super) scene: &'static Scene,
     pub(super) entries: Vec<Entry>,
+    pub(super) exact: Exact,
     chart: Chart,
-    reference: Replicas,
 }
 
 pub(super) fn study(run: &Run<'_>, scene: &'static Scene) -> Result<Compared, Failure> {
-    let subject = scene.subject(run)?;
-    let seed = run.seed(format_args!("{}/reference", scene.id));
-    let long = subject.with("integrator", json!({ "kind": "bidirectional" }));
-    let reference = long.measure(run.samples(REFERENCE), (seed, REFERENCES), &run.media)?;
-    run.advance();
-    let (pixels, squared_error) = reference.mean();
-    let (mean, error) = reference.mean_of_images();
+    let exact = Exact::of(run, scene)?;
     let (mut entries, mut curves) = (Vec::new(), Vec::new());
     for (name, integrator, samples) in methods() {
-        let subject = subject.with("integrator", integrator);
-        let mut marks = Vec::new();
+        let mut points = Vec::new();
         for point in 0..POINTS {
             let part = STEP.pow(POINTS - 1 - point);
             let samples = (run.samples(samples) / part).max(2);
             let seed = run.seed(format_args!("{}/{name}/samples over {part}", scene.id));
-            let images = subject.measure(samples, (seed, REPLICAS), &run.media)?;
-            let squares = images.squared_difference(&pixels, squared_error);
-            let (rmse, seconds) = (squares.map(|square| square.max(0.0).sqrt()), images.seconds());
-            marks.push(rmse.mark(seconds));
-            run.advance();
-            if point + 1 == POINTS {
-                let (its_mean, its_error) = images.mean_of_images();
-                let rays = f64::from(samples) * pixels.len() as f64;
-                entries.push(Entry {
-                    name,
-                    rmse,
-                    cost: squares.map(|square| square * seconds),
-                    seconds: seconds / rays,
-                    z: (its_mean - mean) / its_error.hypot(error),
-                    images,
-                });
-            }
+            points.push(exact.entry(run, (name, integrator.clone()), (samples, seed))?);
         }
-        curves.push(Curve::joined(name, marks));
+        curves.push(Curve::joined(name, points.iter().map(|entry| entry.rmse.mark(entry.images.seconds()))));
+        entries.extend(points.pop());
     }
     let (x, y) = (Axis::logarithmic("CPU seconds of an image [s]"), Axis::logarithmic("RMSE [radiance]"));
     let title = format!("Error over time: {}", scene.words);
     let chart = Chart::new(&format!("{}-time", scene.id), &title, x, y).with_curves(curves);
-    Ok(Compared { scene, entries, chart, reference })
+    Ok(Compared { scene, entries, chart, exact })
 }
 
 impl Compared {
@@ -105,7 +127,7 @@ impl Compared {
 
     /// Light by strategy, as bidirectional path tracing found it.
     pub(super) fn strategies(&self) -> Vec<StrategyShare> {
-        self.reference.first().strategies()
+        self.exact.images.first().strategies()
     }
 
     /// Methods whose mean is too far from that of the reference. Those without a light image may lack what is bright and rare.
@@ -121,7 +143,7 @@ impl Compared {
         let shown = |images: &Replicas, part: &str, label: &str, lines: Vec<String>| {
             images.picture(format!("{id}-{part}"), label, lines, *exposure)
         };
-        let exact = shown(&self.reference, "reference", "reference", vec!["bidirectional".to_owned()]);
+        let exact = shown(&self.exact.images, "reference", "reference", vec!["bidirectional".to_owned()]);
         let others = self.entries.iter().take(2).enumerate().map(|(k, entry)| {
             let lines = vec![
                 format!("RMSE {:.4}", entry.rmse.value),

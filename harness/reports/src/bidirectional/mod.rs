@@ -2,6 +2,7 @@
 
 mod claims;
 mod equal_time;
+mod extensions;
 mod point;
 mod scenes;
 mod strategies;
@@ -18,8 +19,10 @@ const WEIGHTS: &str = "bidirectional/partition/";
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     let scenes = SCENES.len() as u64;
-    run.expect(scenes * equal_time::STEPS + point::STEPS + strategies::STEPS + Laws::steps(WEIGHTS));
+    let sections = point::STEPS + strategies::STEPS + extensions::steps();
+    run.expect(scenes * equal_time::STEPS + sections + Laws::steps(WEIGHTS));
     let compared = SCENES.iter().map(|scene| equal_time::study(run, scene)).collect::<Result<Vec<_>, _>>()?;
+    let extended = extensions::study(run, &compared)?;
     let point = point::study(run)?;
     let triangle = strategies::study(run)?;
     let laws = Laws::study(run, WEIGHTS);
@@ -27,10 +30,11 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     let gallery = compared.iter().map(equal_time::Compared::row).collect();
     Ok(Document {
         summary: claims::summary(&compared, &point),
-        claims: vec![claims::a1(&laws), claims::l1(&compared), claims::r5(&laws)],
+        claims: vec![claims::a1(&laws), extensions::a2(&extended), claims::l1(&compared), claims::r5(&laws)],
         unsound,
         sections: vec![
             equal_time::section(run, &compared, gallery),
+            extensions::section(&extended),
             point.section,
             strategies::section(&compared, triangle),
             claims::section(&laws),

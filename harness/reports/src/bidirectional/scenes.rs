@@ -55,6 +55,15 @@ pub(super) const SCENES: [Scene; 5] = [
     },
 ];
 
+/// The same light from everywhere: no choice of directions is better than another.
+pub(super) const UNIFORM: Scene = Scene {
+    id: "uniform-sky",
+    words: "haze over a floor under a sky that is alike in all directions",
+    json: include_str!("../../../scenes/uniform-sky.json"),
+    exposure: 1.0,
+    is_indirect: false,
+};
+
 /// A point light in haze.
 pub(super) const POINT: &str = include_str!("../../../scenes/point-in-haze.json");
 

@@ -8,46 +8,51 @@ use fairflight_harness::Failure;
 use fairflight_harness::render::StrategyShare;
 use serde_json::json;
 
+/// The scene of the triangle: no smooth surface is in it, so that every strategy finds light of every length.
+const SHOWN: &str = "fixture";
 /// Edges of the longest paths whose strategies are shown.
 const LONGEST: u32 = 4;
-/// Strategies of paths of 2 to [`LONGEST`] edges.
-pub(super) const STEPS: u64 = 3 + 4 + 5;
+/// Strategies of paths of 2 to [`LONGEST`] edges, weighted and alone.
+pub(super) const STEPS: u64 = 2 * (3 + 4 + 5);
 const SAMPLES: u32 = 64;
 
-/// The triangle of strategies of the first scene, a row for each length of paths.
-pub(super) fn study(run: &Run<'_>) -> Result<Vec<(String, Vec<Picture>)>, Failure> {
-    let scene = &SCENES[0];
+/// Rows of pictures with their labels.
+type Rows = Vec<(String, Vec<Picture>)>;
+
+/// The triangle of strategies of one scene: two rows for each length of paths, with the same variates.
+pub(super) fn study(run: &Run<'_>) -> Result<Rows, Failure> {
+    let scene = SCENES.iter().find(|scene| scene.id == SHOWN).expect("a scene of the report");
     let subject = scene.subject(run)?;
     let mut rows = Vec::new();
     for edges in 2..=LONGEST {
-        let mut pictures = Vec::new();
-        for t in 1..=edges + 1 {
-            let s = edges + 1 - t;
-            let subject =
-                subject.with("integrator", json!({ "kind": "bidirectional", "strategies": [[s, t]] }));
-            let seed = run.seed(format_args!("strategies/{s}/{t}"));
-            let images = subject.measure(run.samples(SAMPLES), (seed, 2), &run.media)?;
-            let (mean, _) = images.mean_of_images();
-            let lines = vec![format!("mean {mean:.2e}")];
-            pictures.push(images.picture(
-                format!("strategy-{s}-{t}"),
-                format!("s = {s}, t = {t}"),
-                lines,
-                4.0 * scene.exposure,
-            ));
-            run.advance();
+        for (id, words, weighted) in [("strategy", "weighted", true), ("alone", "each alone", false)] {
+            let mut pictures = Vec::new();
+            for t in 1..=edges + 1 {
+                let s = edges + 1 - t;
+                let one = json!({ "kind": "bidirectional", "strategies": [[s, t]], "weighted": weighted });
+                let (samples, seed) = (run.samples(SAMPLES), run.seed(format_args!("strategies/{s}/{t}")));
+                let images = subject.with("integrator", one).measure(samples, (seed, 2), &run.media)?;
+                let variance = images.squared_error().value * f64::from(samples);
+                let mean = images.mean_of_images().0;
+                let lines = vec![format!("mean {mean:.2e}"), format!("variance {variance:.1e}")];
+                let label = format!("s = {s}, t = {t}");
+                pictures.push(images.picture(format!("{id}-{s}-{t}"), label, lines, 4.0 * scene.exposure));
+                run.advance();
+            }
+            rows.push((format!("{edges} edges, {words}"), pictures));
         }
-        rows.push((format!("{edges} edges"), pictures));
     }
     Ok(rows)
 }
 
-pub(super) fn section(compared: &[Compared], triangle: Vec<(String, Vec<Picture>)>) -> Section {
-    let title = format!("Light by strategy in {}, weighted, two stops brighter", SCENES[0].id);
+pub(super) fn section(compared: &[Compared], triangle: Rows) -> Section {
+    let title = format!("Light by strategy in {SHOWN}, two stops brighter");
     let section = Section::new("strategies", "Strategies and what they find")
         .with(
-            "Weighted contributions of s vertices from a light and t from the camera. The sum over a row of pictures is all light of paths of that \
-             length. Variances are those of one sample of a pixel, averaged over pixels; only strategies with a share of at least 0.1 % are listed."
+            "Contributions of s vertices from a light and t from the camera: weighted, and divided by their weights, as each strategy finds light alone. \
+             The sum over a weighted row is all light of paths of that length; a strategy alone has the mean of that sum, where it can make all such \
+             paths, and its own noise. What is bright and rare alone weighs little. Variances are those of one sample of a pixel, averaged over \
+             pixels: of these samples, since one connection in the medium alone has none (1/r²). The table lists strategies with a share of at least 0.1 %."
                 .to_owned(),
         )
         .with(Gallery::of_images("strategies-images", &title, triangle));

@@ -105,12 +105,7 @@ pub(super) fn e2(strategies: &Strategies, sizes: &Sizes) -> Claim {
 pub(super) fn e3(approximations: &Approximations) -> Claim {
     let lost: Vec<(f64, f64)> =
         approximations.inside.iter().map(|(bound, share)| (*bound, 1.0 - share)).collect();
-    let half = |(_, lost): &&(f64, f64)| (0.4..=0.6).contains(lost);
-    let verdict = match lost.iter().filter(half).count() {
-        n if n == lost.len() => ClaimVerdict::Holds,
-        0 => ClaimVerdict::DoesNotHold,
-        _ => ClaimVerdict::HoldsUnder,
-    };
+    let verdict = ClaimVerdict::of_cases(lost.iter().map(|(_, lost)| (0.4..=0.6).contains(lost)));
     let words: Vec<String> =
         lost.iter().map(|(bound, lost)| format!("b = {bound}: {:.0} %", 100.0 * lost)).collect();
     Claim::new(
@@ -158,11 +153,7 @@ pub(super) fn e4(approximations: &Approximations) -> Claim {
 /// E5. Criterion: the share lies between 0.3 and 0.45.
 pub(super) fn e5(costs: &Costs) -> Claim {
     let within = |share: &Measured| (0.3..=0.45).contains(&share.value);
-    let verdict = match (within(&costs.share_ignored), within(&costs.share_full)) {
-        (true, true) => ClaimVerdict::Holds,
-        (false, false) => ClaimVerdict::DoesNotHold,
-        _ => ClaimVerdict::HoldsUnder,
-    };
+    let verdict = ClaimVerdict::of_cases([&costs.share_ignored, &costs.share_full].map(within));
     Claim::new(
         ("E5", "engelhardt-2013 fig. 10"),
         "Two-step approximate compensation costs about 35-38 % of the shading time of a VPL",

@@ -82,7 +82,7 @@ fn splotches(run: &Run<'_>) -> Result<Section, Failure> {
     const CLOUD: (u32, u32, u32) = (512, 200, 48);
     const EXPOSURE: f64 = 3.0;
     let (reference_paths, paths, eye_samples) = CLOUD;
-    let subject = scenes::cloud(run.quick_or(24, 48))?;
+    let subject = scenes::cloud(scenes::side(run))?;
     let reference = Reference::of(run, &subject, reference_paths, run.seed("splotches/reference"))?;
     let unbiased = vec!["unbiased".to_owned()];
     let mut pictures =
@@ -188,7 +188,7 @@ fn difference(k: usize, stage: &Stage, reference: &Reference) -> Picture {
 fn scanline(run: &Run<'_>) -> Result<Section, Failure> {
     /// Pixels, sets of lights, and paths per pixel.
     const LINE: (u32, u32, u32) = (64, 512, 65536);
-    let (columns, sets, paths) = LINE;
+    let (columns, sets, paths) = (run.quick_or(LINE.0 / 2, LINE.0), LINE.1, LINE.2);
     let subject = scenes::scanline(columns)?;
     let reference = Reference::of(run, &subject, paths, run.seed("scanline/reference"))?;
     let x = |i: usize| i as f64 + 0.5;

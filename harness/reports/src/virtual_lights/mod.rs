@@ -2,6 +2,7 @@
 
 mod anisotropy;
 mod approximations;
+mod beams;
 mod claims;
 mod clamping;
 mod costs;
@@ -23,6 +24,7 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     let parts = [
         sizes::steps(),
         strategies::steps(),
+        beams::steps(),
         clamping::steps(),
         approximations::steps(),
         costs::steps(),
@@ -32,13 +34,17 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     let room = Reference::of(run, &scenes::smoke_room(scenes::side(run))?, ROOM_PATHS, run.seed("room"))?;
     let clamping = clamping::study(run, &room)?;
     let strategies = strategies::study(run, &room)?;
+    let beams = beams::study(run, &room, &strategies)?;
     let sizes = sizes::study(run)?;
     let approximations = approximations::study(run)?;
     let costs = costs::study(run)?;
     let anisotropy = anisotropy::study(run)?;
     let unsound = claims::unsound(&strategies, &clamping, &anisotropy);
     Ok(Document {
-        summary: claims::summary((&strategies, &sizes), &clamping, &approximations, &costs),
+        summary: claims::summary((&strategies, &sizes), &clamping, &approximations, &costs)
+            .into_iter()
+            .chain(beams::summary(&beams))
+            .collect(),
         claims: vec![
             claims::e1(&clamping),
             claims::e2(&strategies, &sizes),
@@ -46,13 +52,14 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
             claims::e4(&approximations),
             claims::e5(&costs),
             claims::e6(&anisotropy),
+            beams::e7(&beams),
             claims::r4(&strategies, &unsound),
         ],
         unsound,
         sections: clamping
             .sections
             .into_iter()
-            .chain([strategies.section, sizes.section])
+            .chain([strategies.section, sizes.section, beams::section(run, &room, &beams)])
             .chain(approximations.sections)
             .chain([costs.section, anisotropy.section])
             .collect(),

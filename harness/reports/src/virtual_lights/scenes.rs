@@ -14,7 +14,7 @@ const LIT_CLOUD: &str = include_str!("../../../scenes/lit-cloud.json");
 
 /// Pixels along each side of what is measured.
 pub(super) fn side(run: &Run<'_>) -> u32 {
-    run.quick_or(24, 48)
+    run.quick_or(16, 48)
 }
 
 /// The bound that all figures use where nothing else is said \[1/length²\].

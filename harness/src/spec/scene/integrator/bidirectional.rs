@@ -27,6 +27,8 @@ kind! {
         max_vertices: u32 as Whole<1, MOST_VERTICES> = MOST_VERTICES as u32,
         /// "all", or a list of [s, t] with s vertices from a light and t from the camera: a part of the light, a bias.
         strategies: Option<Vec<Strategy>> as Strategies = None,
+        /// False to count what these strategies find without their weights, each as if it were alone: a bias.
+        weighted: bool as Flag = true,
         /// False to leave out connections of light paths with the camera (t = 1), in weights as well.
         light_image: bool as Flag = true,
         /// The flights, connections and weights of both paths.
@@ -136,6 +138,10 @@ impl Rule<Option<Vec<Strategy>>> for Strategies {
 
 impl BidirectionalSpec {
     fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
+        if !self.weighted && self.strategies.is_none() {
+            let why = "needs a list of strategies: all of them without weights would count most light several times";
+            return Err(object.required("weighted")?.refuse(why));
+        }
         if self.light_image {
             return Ok(());
         }
@@ -157,7 +163,8 @@ impl IntegratorKind for BidirectionalSpec {
     }
     fn bias(&self) -> Option<&'static str> {
         if self.strategies.is_some() {
-            return Some("strategies: a part of the light only");
+            let unweighted = "weighted: light as strategies would find it alone, with what others find too";
+            return Some(if self.weighted { "strategies: a part of the light only" } else { unweighted });
         }
         super::of_a_baseline(self.transport.is_biased_baseline())
     }
