@@ -24,6 +24,7 @@ use crate::LARGEST_VARIATE;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallStep {
+    least: f64,
     largest: f64,
     log2_ratio: f64,
 }
@@ -59,10 +60,16 @@ impl SmallStep {
     /// If they are not ordered: 0 < least ≤ largest ≤ 1/2.
     pub fn new(least: f64, largest: f64) -> Result<Self, SmallStepError> {
         if 0.0 < least && least <= largest && largest <= 0.5 {
-            Ok(Self { largest, log2_ratio: (largest / least).log2() })
+            Ok(Self { least, largest, log2_ratio: (largest / least).log2() })
         } else {
             Err(SmallStepError::NotOrdered { least, largest })
         }
+    }
+
+    /// The least step \[1\].
+    #[must_use]
+    pub fn least(self) -> f64 {
+        self.least
     }
 
     /// The largest step \[1\].
@@ -88,7 +95,7 @@ impl SmallStep {
 /// Between 1/1024 and 1/16, as Kelemen has them.
 impl Default for SmallStep {
     fn default() -> Self {
-        Self { largest: 1.0 / 16.0, log2_ratio: 6.0 }
+        Self { least: 1.0 / 1024.0, largest: 1.0 / 16.0, log2_ratio: 6.0 }
     }
 }
 

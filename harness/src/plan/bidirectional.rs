@@ -25,13 +25,16 @@ pub struct BidirectionalPlan {
     pub transport: TransportPlan,
     connection_roulette: Option<f64>,
     pub(super) thickness: ThicknessSpec,
-    max_vertices: u32,
+    pub(super) max_vertices: u32,
     point_caustics: bool,
     light_paths_per_pixel: u32,
     light_image: bool,
     strategies: Option<Vec<Strategy>>,
     weighted: bool,
 }
+
+/// Paths from both ends, among surfaces.
+pub(super) type Joined<'s, M, C> = Bidirectional<'s, Seen<'s, M, C, Surfaces<C>>, ThicknessSpec>;
 
 impl BidirectionalPlan {
     pub(super) fn build(spec: &BidirectionalSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
@@ -56,6 +59,16 @@ impl BidirectionalPlan {
         volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
     ) -> AnyIntegrator<'s, C> {
+        let integrator = self.joined(volume, stage);
+        Box::new(OfTile { plan: self, integrator, light: Subpath::empty(), found: nothing(), bad: None })
+    }
+
+    /// Paths from both ends.
+    pub(super) fn joined<'s, M: LineThickness + 's, C: Spectrum + 's>(
+        &'s self,
+        volume: &'s SceneVolume<'s, M, C>,
+        stage: Stage<'s, C>,
+    ) -> Joined<'s, M, C> {
         let Stage { lights, surfaces, camera, emitters, mean, unlawful, .. } = stage;
         let TransportPlan { walk, shadow, heuristic } = &self.transport;
         let [columns, rows] = camera.resolution().map(f64::from);
@@ -72,9 +85,8 @@ impl BidirectionalPlan {
         let walking = Walking { walk: walk.walk(), max_vertices, point_caustics };
         // Nothing is left to chance before something is known, or where all is dark.
         let threshold = self.connection_roulette.zip(mean).map(|(share, mean)| share * mean);
-        let integrator = Bidirectional::new(weigh, walking, shadow.worker(unlawful))
-            .with_connection_roulette(threshold.filter(|&threshold| threshold > 0.0));
-        Box::new(OfTile { plan: self, integrator, light: Subpath::empty(), found: nothing(), bad: None })
+        Bidirectional::new(weigh, walking, shadow.worker(unlawful))
+            .with_connection_roulette(threshold.filter(|&threshold| threshold > 0.0))
     }
 }
 

@@ -2,13 +2,14 @@
 
 use super::beam_radiance::BeamRadiancePlan;
 use super::bidirectional::BidirectionalPlan;
+use super::metropolis::MetropolisPlan;
 use super::path_tracer::PathTracerPlan;
 use super::single_scattering::SingleScatteringPlan;
 use super::transport::{Stage, TransportPlan, VplPlan};
 use super::{AnyPhase, Tally, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, Unlawful};
-use crate::spec::{IntegratorSpec, Particles, ReuseSpec, ThicknessSpec, TransmittanceSpec};
+use crate::spec::{IntegratorSpec, Particles, ThicknessSpec, TransmittanceSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Spectrum, Volume};
@@ -48,6 +49,8 @@ pub enum IntegratorPlan {
     Bidirectional(BidirectionalPlan),
     /// Photons beside camera rays, among surfaces.
     BeamRadiance(BeamRadiancePlan),
+    /// Chains of paths, which are not drawn pixel by pixel; here is what they leave out.
+    Metropolis(Box<MetropolisPlan>),
 }
 
 /// An integrator on a medium, for one tile: one call per camera ray, and what happens below is compiled for the types of the scene.
@@ -197,6 +200,9 @@ impl IntegratorPlan {
             IntegratorSpec::BeamRadiance(spec) => {
                 BeamRadiancePlan::build(spec, scene).map(Self::BeamRadiance)
             }
+            IntegratorSpec::Metropolis(spec) => {
+                MetropolisPlan::build(spec, scene).map(|plan| Self::Metropolis(Box::new(plan)))
+            }
         }
     }
 
@@ -218,6 +224,7 @@ impl IntegratorPlan {
             Self::Vpl(plan) => Some(&plan.transport),
             Self::Bidirectional(plan) => Some(&plan.transport),
             Self::BeamRadiance(plan) => Some(&plan.transport),
+            Self::Metropolis(plan) => Some(plan.transport()),
             Self::Transmittance(_)
             | Self::ParticleTracer(_)
             | Self::PhotonTracer(_)
@@ -237,56 +244,6 @@ impl IntegratorPlan {
         }
     }
 
-    /// True if the pixels of a pass share virtual point lights, photons or paths, or light each other: a pass is then of one sample per
-    /// pixel.
-    #[must_use]
-    pub fn draws_in_batches(&self) -> bool {
-        matches!(self, Self::Vpl(_)) || self.splats() || self.correlation().is_some()
-    }
-
-    /// What pixels of a pass share beside virtual point lights and light images, in words.
-    #[must_use]
-    pub fn correlation(&self) -> Option<&'static str> {
-        match self {
-            Self::PathTracer(plan) if plan.reuse.is_some() => {
-                Some("pixels of a group share paths: the standard error is that of the means of passes")
-            }
-            Self::BeamRadiance(_) => Some(
-                "pixels of a pass share a map of photons: the standard error is that of the means of passes, each with a map of its own; \
-                 MSE and errors are those of the variance, the bias is not in them",
-            ),
-            _ => None,
-        }
-    }
-
-    /// The light paths whose photons an integrator asks, and how they fly.
-    #[must_use]
-    pub fn photons(&self) -> Option<(u32, &TransportPlan)> {
-        match self {
-            Self::PathTracer(plan) => plan.photons().map(|paths| (paths, &plan.transport)),
-            Self::BeamRadiance(plan) => Some((plan.photons, &plan.transport)),
-            _ => None,
-        }
-    }
-
-    /// True if all passes share what is prepared for the first: whatever it is, the expectation of a sample is the same.
-    #[must_use]
-    pub fn keeps_its_batch(&self) -> bool {
-        matches!(self, Self::PathTracer(_))
-    }
-
-    /// Pixels of a group that uses the paths of all, along rows and columns, and from one to the next.
-    #[must_use]
-    pub fn groups(&self) -> Option<ReuseSpec> {
-        if let Self::PathTracer(plan) = self { plan.reuse.clone() } else { None }
-    }
-
-    /// True if samples are not complete before all of their pass are drawn.
-    #[must_use]
-    pub fn splats(&self) -> bool {
-        matches!(self, Self::Bidirectional(_))
-    }
-
     /// The integrator in a volume, for one tile.
     ///
     /// # Errors
@@ -304,6 +261,7 @@ impl IntegratorPlan {
                 Self::Vpl(plan) => plan.on(volume, stage),
                 Self::Bidirectional(plan) => plan.on(volume, stage),
                 Self::BeamRadiance(plan) => return plan.on(volume, stage),
+                Self::Metropolis(plan) => plan.on(volume, stage),
                 _ => plain(Attenuation::new(volume, lights, Regular)),
             });
         }
@@ -326,6 +284,7 @@ impl IntegratorPlan {
             Self::Vpl(plan) => plan.on(volume, stage),
             Self::Bidirectional(plan) => plan.on(volume, stage),
             Self::BeamRadiance(plan) => return plan.on(volume, stage),
+            Self::Metropolis(plan) => plan.on(volume, stage),
         })
     }
 

@@ -7,6 +7,8 @@
 mod beam_radiance;
 mod bidirectional;
 mod integrator;
+mod metropolis;
+mod passes;
 mod path_tracer;
 mod phase;
 mod rays;
@@ -20,6 +22,7 @@ mod walk;
 pub use beam_radiance::BeamRadiancePlan;
 pub use bidirectional::BidirectionalPlan;
 pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, Splatted, TileIntegrator};
+pub use metropolis::MetropolisPlan;
 pub use path_tracer::PathTracerPlan;
 pub use phase::AnyPhase;
 pub use scene::{Radiant, ScenePlan, Spectra};

@@ -97,6 +97,10 @@ impl ScenePlan {
             media: library,
         };
         let integrator = IntegratorPlan::build(&spec.integrator, &scene)?;
+        if let IntegratorPlan::Metropolis(plan) = &integrator {
+            let pixels = spec.camera.resolution().map(u64::from).iter().product();
+            plan.check(pixels, spec.samples_per_pixel)?;
+        }
         Ok(Self {
             camera: spec.camera,
             medium,

@@ -1,6 +1,6 @@
 //! Virtual point lights and photons that all tiles of a pass share.
 
-use super::photons::PhotonLayer;
+use super::replicas::ReplicaLayer;
 use fairflight_photons::PhotonMap;
 use fairflight_scene::Spectrum;
 use fairflight_vpl::Vpl;
@@ -17,13 +17,13 @@ pub(super) struct Batch<C> {
     /// The mean radiance that the passes before found; `None` without any.
     pub mean: Option<f64>,
     /// Light that is not drawn pixel by pixel.
-    pub photons: Option<PhotonLayer<C>>,
+    pub replicas: Option<ReplicaLayer<C>>,
 }
 
 impl<C: Spectrum> Batch<C> {
     /// A batch without anything that is shared.
     pub(super) fn none() -> Self {
         let (vpls, map) = (Vec::new(), PhotonMap::new([]));
-        Self { vpls, map, bound: f64::INFINITY, mean: None, photons: None }
+        Self { vpls, map, bound: f64::INFINITY, mean: None, replicas: None }
     }
 }

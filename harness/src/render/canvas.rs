@@ -2,6 +2,7 @@
 
 use super::batch::Batch;
 use super::pixel::Pixel;
+use super::replicas::Chains;
 use super::tile::Tile;
 use crate::spec::ReuseSpec;
 use fairflight_scene::Spectrum;
@@ -38,6 +39,8 @@ pub(super) struct Drawn<C> {
     pub mean_variance: MeanVariance,
     /// Light by strategy; none where it is not told.
     pub strategies: Vec<Found>,
+    /// Chains that drew a part of it.
+    pub chains: Option<Chains>,
     /// Warning about the walks.
     pub warning: Option<String>,
 }
@@ -134,9 +137,9 @@ impl<C: Spectrum> Canvas<C> {
         };
         let (cost, samples, warning) = (self.cost, self.samples, self.warning.clone());
         let strategies = self.strategies();
-        let mut drawn = Drawn { pixels, cost, samples, mean_variance, strategies, warning };
-        if let Some(photons) = self.batch.as_ref().and_then(|batch| batch.photons.as_ref()) {
-            photons.add_to(&mut drawn);
+        let mut drawn = Drawn { pixels, cost, samples, mean_variance, strategies, chains: None, warning };
+        if let Some(replicas) = self.batch.as_ref().and_then(|batch| batch.replicas.as_ref()) {
+            replicas.add_to(&mut drawn);
         }
         drawn
     }
@@ -152,6 +155,8 @@ impl Drawn<DVec3> {
             samples: red.samples,
             mean_variance: MeanVariance::of_channels([&red, &green, &blue].map(|drawn| drawn.mean_variance)),
             strategies: Found::of_channels([&red, &green, &blue].map(|drawn| drawn.strategies.as_slice())),
+            // Chains have one target: no channels of their own.
+            chains: None,
             warning: red.warning.or(green.warning).or(blue.warning),
         }
     }

@@ -61,10 +61,12 @@ impl<M: LineThickness + Copy + Sync, C: Spectrum> Scene<C> for In<'_, M, C> {
     fn prepare(&self, pass: usize) -> Result<(Batch<C>, Spent), Failure> {
         let Self { draw, medium, emitters } = self;
         let integrator = &draw.plan.integrator;
+        let count = integrator.replicas().map_or(0, |count| count.min(draw.plan.samples_per_pixel));
         match integrator {
             IntegratorPlan::Vpl(plan) => draw.virtual_lights(*medium, plan, (emitters, pass)),
             // In empty space nothing is scattered towards the camera.
-            IntegratorPlan::PhotonTracer(walk) if !M::IS_EMPTY => draw.photons(*medium, walk),
+            IntegratorPlan::PhotonTracer(walk) if !M::IS_EMPTY => draw.photons(*medium, walk, count),
+            IntegratorPlan::Metropolis(plan) => draw.chains(*medium, plan, (emitters, count)),
             _ => integrator.photons().map_or(Ok((Batch::none(), Spent::default())), |how| {
                 draw.map(*medium, how, (emitters, pass))
             }),

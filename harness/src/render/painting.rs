@@ -4,7 +4,7 @@ use super::canvas::{Canvas, Drawn};
 use super::draw::Draw;
 use super::statistics::Moments;
 use crate::Failure;
-use crate::plan::{IntegratorPlan, Radiant, ScenePlan, Spectra};
+use crate::plan::{Radiant, ScenePlan, Spectra};
 use fairflight_scene::Spectrum;
 use fairflight_sources::derive_seed;
 use glam::DVec3;
@@ -68,8 +68,8 @@ impl<'p> Painting<'p> {
     fn add(&mut self, samples: u32, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
         let plan = self.plan;
         debug_assert!(
-            samples == plan.samples_per_pixel || !matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)),
-            "photons come in replicas of the whole image"
+            samples == plan.samples_per_pixel || plan.integrator.replicas().is_none(),
+            "replicas are of the whole image"
         );
         match &mut self.canvases {
             Canvases::Gray(radiant, canvas) => add(plan, radiant, canvas, samples, advance),

@@ -73,6 +73,7 @@ fn pilot(spec: &SceneSpec) -> Result<SceneSpec, Failure> {
         | IntegratorSpec::BeamRadiance(BeamRadianceSpec { transport, .. }) => {
             pilot.integrator = PathTracerSpec::of_all_lengths(transport.clone()).into();
         }
+        IntegratorSpec::Metropolis(spec) => pilot.integrator = spec.independent(),
         // Nor does that of any extension matter, which leave it as it is.
         IntegratorSpec::PathTracer(tracer) => {
             let PathTracerSpec { extension, light_candidates, reuse, .. } = tracer;

@@ -8,7 +8,7 @@ use super::{Moments, Painting, pilot, warnings};
 use crate::field::MediumLibrary;
 use crate::image::{Exposure, Image};
 use crate::input::Input;
-use crate::plan::{IntegratorPlan, Spectra};
+use crate::plan::Spectra;
 use crate::result::{SweepPoint, SweepResult};
 use crate::{Environment, Failure};
 use std::sync::OnceLock;
@@ -37,8 +37,8 @@ impl Rendering<'_> {
         let plan = &self.point.plan;
         let [width, height] = plan.camera.resolution().map(u64::from);
         let images = if matches!(plan.spectra, Spectra::Separate(_)) { 3 } else { 1 };
-        // Photons come on top of the background behind the medium.
-        let layers = if matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) { 2 } else { 1 };
+        // Replicas come on top of what is drawn pixel by pixel.
+        let layers = if plan.integrator.replicas().is_some() { 2 } else { 1 };
         let samples = width * height * u64::from(plan.samples_per_pixel) * images * layers;
         let bar = self.environment.progress(samples, "rendering");
         let (mut files, mut errors) = (Rhythm::new(FILES_EVERY), Rhythm::new(ERROR_EVERY));

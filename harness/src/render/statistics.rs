@@ -2,12 +2,14 @@
 
 use super::canvas::{Drawn, Found, MeanVariance, Spent};
 use super::pixel::Pixel;
+use super::replicas::Chains;
 use crate::estimator::Preparation;
 use crate::image::Image;
 use crate::plan::{IntegratorPlan, ScenePlan, Tally};
 use crate::result::{Provenance, number};
 use fairflight_scene::Spectrum;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The statistics of an image, in the form of the published spec.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,6 +33,9 @@ pub(super) struct Statistics {
     /// The power of points and directions that went straight into smooth surfaces and was not followed; left out without light paths.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unseen_power: Option<f64>,
+    /// Chains of the replicas; left out for an integrator without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub chains: Option<ChainStatistics>,
     /// Definition of mean squared error and efficiency, in words.
     pub method: String,
     pub warnings: Vec<String>,
@@ -129,6 +134,30 @@ pub struct StrategyShare {
     pub variance: Option<f64>,
 }
 
+/// Chains of all replicas.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct ChainStatistics {
+    /// Number of replicas.
+    pub replicas: u32,
+    /// Independent samples before the chains.
+    pub bootstrap: BootstrapStatistics,
+    /// Mean probability of accepting a step, by its kind.
+    pub acceptance: BTreeMap<&'static str, Option<f64>>,
+}
+
+/// Independent samples that chains start from, of all replicas.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct BootstrapStatistics {
+    /// Mean brightness of a sample of the whole image: b, of which each replica uses its own estimate.
+    #[serde(serialize_with = "number")]
+    pub b: Option<f64>,
+    /// Its standard error.
+    #[serde(serialize_with = "number")]
+    pub standard_error: Option<f64>,
+    /// Replicas that found no light, and are black.
+    pub black_replicas: u32,
+}
+
 /// 1/(MSE · cost), null at zero error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Efficiency {
@@ -152,6 +181,7 @@ pub struct Moments {
     mean_variance: Option<f64>,
     cost: Spent,
     strategies: Vec<Found>,
+    chains: Option<Chains>,
     warning: Option<String>,
 }
 
@@ -180,6 +210,7 @@ impl<C: Spectrum> From<Drawn<C>> for Moments {
             },
             cost: drawn.cost,
             strategies: drawn.strategies,
+            chains: drawn.chains,
             warning: drawn.warning,
         }
     }
@@ -303,6 +334,7 @@ impl Moments {
             strategies: self.strategies(),
             unseen_power: (self.cost.light_paths > 0)
                 .then(|| self.cost.unseen_power / self.cost.light_paths as f64),
+            chains: self.chain_statistics(plan),
             method: format!(
                 "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}{shared}",
                 prepared(&plan.integrator)
@@ -310,6 +342,20 @@ impl Moments {
             warnings,
             provenance,
         }
+    }
+
+    /// Chains of the replicas; none of an integrator without any.
+    fn chain_statistics(&self, plan: &ScenePlan) -> Option<ChainStatistics> {
+        let Chains { bootstrap, black, steps } = self.chains.as_ref()?;
+        Some(ChainStatistics {
+            replicas: plan.integrator.replicas().map_or(0, |count| count.min(self.samples)),
+            bootstrap: BootstrapStatistics {
+                b: bootstrap.mean(),
+                standard_error: bootstrap.standard_error(),
+                black_replicas: *black,
+            },
+            acceptance: steps.iter().map(|(kind, steps)| (*kind, steps.mean())).collect(),
+        })
     }
 
     /// Light by the strategies that found some.

@@ -89,6 +89,8 @@ pub(super) fn check(
         Spectra::Separate(_) => 3 * Tile::<f64>::BYTES_PER_PIXEL,
     };
     in_memory("camera.resolution", pixels, "pixels", bytes)?;
+    let replicas = plan.integrator.replicas().map_or(0.0, f64::from);
+    in_memory("integrator.replicas", replicas * pixels, "pixels of replicas", size_of::<DVec3>())?;
 
     let chords = Chords::of(plan)?;
     let (key, lookups) = match &spec.integrator {
@@ -272,6 +274,9 @@ impl Walks {
         let rate = rate(plan);
         let most = (MOST / WALKS / shadow).clamp(16.0, 1e5) as u64;
         let mut pilot = reduced(spec, SIDE, 1)?;
+        if let IntegratorSpec::Metropolis(chains) = &pilot.integrator {
+            pilot.integrator = chains.independent();
+        }
         let mut scale = 1.0;
         match &mut pilot.integrator {
             IntegratorSpec::PathTracer(tracer) => {

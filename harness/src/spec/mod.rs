@@ -14,10 +14,10 @@ pub use experiment::{Experiment, Overrides};
 pub use scene::{
     BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec,
     EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec, GuidedSpec, IntegratorKind, IntegratorSpec,
-    LightSpec, LineSplittingSpec, MaterialSpec, Particles, PathTracerSpec, PhaseKind, PhaseSpec, PointSpec,
-    RectangleSpec, ResampledSpec, ReuseSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind,
-    ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, ThicknessSpec, TracerSpec,
-    TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
+    LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec, Over, Particles, PathTracerSpec, PhaseKind,
+    PhaseSpec, PointSpec, RectangleSpec, ResampledSpec, ReuseSpec, SamplingFieldSpec, SceneOverrides,
+    SceneSpec, ShapeKind, ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, ThicknessSpec,
+    TracerSpec, TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };
 pub use sweep::{Request, Sweep};
 

@@ -11,9 +11,9 @@ mod volume;
 pub use colour::ColourSpec;
 pub use integrator::{
     BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ComponentSpec, ExtensionSpec, GuidedSpec,
-    IntegratorKind, IntegratorSpec, LineSplittingSpec, Particles, PathTracerSpec, ResampledSpec, ReuseSpec,
-    SamplingFieldSpec, SingleScatteringSpec, Strategy, ThicknessSpec, TracerSpec, TransmittanceSpec,
-    TransportSpec, VplSpec, WalkSpec,
+    IntegratorKind, IntegratorSpec, LineSplittingSpec, MetropolisSpec, Over, Particles, PathTracerSpec,
+    ResampledSpec, ReuseSpec, SamplingFieldSpec, SingleScatteringSpec, Strategy, ThicknessSpec, TracerSpec,
+    TransmittanceSpec, TransportSpec, VplSpec, WalkSpec,
 };
 pub use light::{DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec, LightSpec, PointSpec};
 pub use phase::{PhaseKind, PhaseSpec};

@@ -4,6 +4,7 @@ mod beam_radiance;
 mod bidirectional;
 mod extension;
 mod line_splitting;
+mod metropolis;
 mod particle_tracer;
 mod path_tracer;
 mod single_scattering;
@@ -16,6 +17,7 @@ pub use beam_radiance::BeamRadianceSpec;
 pub use bidirectional::{BidirectionalSpec, ThicknessSpec};
 pub use extension::{ExtensionSpec, GuidedSpec, ResampledSpec, ReuseSpec};
 pub use line_splitting::LineSplittingSpec;
+pub use metropolis::{MetropolisSpec, Over};
 pub use particle_tracer::{Particles, TracerSpec};
 pub use path_tracer::PathTracerSpec;
 pub use single_scattering::{SingleScatteringSpec, Strategy};
@@ -37,6 +39,7 @@ registry! {
         Vpl(VplSpec),
         Bidirectional(BidirectionalSpec),
         BeamRadiance(BeamRadianceSpec),
+        Metropolis(MetropolisSpec),
     }
 }
 
@@ -83,6 +86,7 @@ impl IntegratorSpec {
             Self::Vpl(spec) => Some(&mut spec.transport.walk),
             Self::Bidirectional(spec) => Some(&mut spec.transport.walk),
             Self::BeamRadiance(spec) => Some(&mut spec.transport.walk),
+            Self::Metropolis(spec) => Some(&mut spec.transport.walk),
             Self::Transmittance(_) | Self::SingleScattering(_) => None,
         }
     }

@@ -1,0 +1,177 @@
+//! Metropolis sampling.
+
+use super::path_tracer::{MOST_VERTICES, PathTracerSpec};
+use super::transport::TransportSpec;
+use super::walk::Collisions;
+use super::{BidirectionalSpec, IntegratorKind, IntegratorSpec};
+use crate::reader::kind::Among;
+use crate::reader::rule::{Maybe, Rule, Whole};
+use crate::reader::{Node, Object};
+use crate::{Failure, kind, words};
+use fairflight_sources::{Layout, SmallStep};
+use serde_json::{Value, json};
+
+/// The space that chains move in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Space {
+    /// Variates of an integrator.
+    Primary,
+}
+
+words! {
+    /// The space that chains move in.
+    pub(super) SpaceWord for Space {
+        "primary" => Space::Primary,
+    }
+}
+
+/// The integrator whose variates are the states of chains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Paths from both ends, joined in all ways.
+    Bidirectional,
+    /// Paths from the camera.
+    PathTracer,
+}
+
+words! {
+    /// The integrator whose variates are the states of chains.
+    pub(super) OverWord for Over {
+        "bidirectional" => Over::Bidirectional,
+        "path_tracer" => Over::PathTracer,
+    }
+}
+
+words! {
+    /// The order of variates.
+    pub(super) RowsWord for Layout {
+        "per_vertex" => Layout::Rows,
+        "flat" => Layout::Flat,
+    }
+}
+
+kind! {
+    /// Chains of paths (kelemen-2002, antwerpen-2011 chapter 6, raab-2008 section 4.4), among surfaces: replicas of the whole image, each without a
+    /// start-up bias.
+    MetropolisSpec = "metropolis" {
+        /// The space that chains move in: the variates of an integrator.
+        space: Space as SpaceWord,
+        /// The integrator whose variates they are.
+        over: Over as OverWord,
+        /// The order of variates: by the vertex that they are drawn for, or one after the other.
+        rows: Layout as RowsWord = Layout::Rows,
+        /// The probability of a step that draws all variates afresh; with 0 a chain stays in the mode where it starts, without a bias.
+        large_step: f64 as Probability = 0.3,
+        /// The least and the largest step of a variate.
+        step: SmallStep as Steps = SmallStep::default(),
+        /// Independent samples of each replica, by which it chooses its starts and scales its image; by default a tenth of its mutations, at most 100000.
+        bootstrap: Option<u64> as Maybe<Whole<1, MOST>> = None,
+        /// Chains of each replica.
+        chains: u32 as Whole<1, MOST> = 1,
+        /// Independent images, which share the samples: errors are told by them alone. By default 16, or one for each sample of a pixel.
+        replicas: Option<u32> as Maybe<Whole<1, MOST_REPLICAS>> = None,
+        /// Edges of the shortest paths that chains make; with 2, which needs bidirectional, lights seen directly are drawn pixel by pixel. 2 over
+        /// bidirectional by default, else 1.
+        first_order: Option<u32> as Maybe<Whole<1, 2>> = None,
+        /// The flights, connections and weights of paths.
+        transport: TransportSpec as Among,
+    }
+    check MetropolisSpec::check
+}
+
+/// More are a slip of the keyboard.
+const MOST: u64 = 1_000_000_000;
+/// Each replica is an image in memory.
+const MOST_REPLICAS: u64 = 1_000;
+
+/// A number from 0 to 1.
+#[derive(Debug)]
+pub(super) struct Probability;
+
+impl Rule<f64> for Probability {
+    fn read(node: &Node<'_>) -> Result<f64, Failure> {
+        node.within(0.0, 1.0)
+    }
+    fn written(probability: &f64) -> Value {
+        json!(probability)
+    }
+    fn schema() -> Value {
+        json!({ "type": "number", "minimum": 0, "maximum": 1 })
+    }
+}
+
+/// The least and the largest step of a variate.
+#[derive(Debug)]
+pub(super) struct Steps;
+
+impl Rule<SmallStep> for Steps {
+    fn read(node: &Node<'_>) -> Result<SmallStep, Failure> {
+        let numbers = node.numbers()?;
+        let [least, largest] = numbers[..] else { return Err(node.refuse("must be a list of two steps")) };
+        SmallStep::new(least, largest).map_err(|error| node.refuse(error.to_string()))
+    }
+    fn written(step: &SmallStep) -> Value {
+        json!([step.least(), step.largest()])
+    }
+    fn schema() -> Value {
+        json!({ "type": "array", "items": { "type": "number", "exclusiveMinimum": 0, "maximum": 0.5 }, "minItems": 2, "maxItems": 2 })
+    }
+}
+
+impl MetropolisSpec {
+    fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
+        if self.transport.walk.colour == Collisions::Separate {
+            return Err(object
+                .required("colour")?
+                .refuse("separate would be three targets: render three scenes"));
+        }
+        if self.over == Over::PathTracer && self.first_order == Some(2) {
+            return Err(object.required("first_order")?.refuse(
+                "2 needs over: bidirectional: the variates of a path tracer do not tell light seen directly apart",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Edges of the shortest paths that chains make.
+    #[must_use]
+    pub fn first_order(&self) -> u32 {
+        self.first_order.unwrap_or(match self.over {
+            Over::Bidirectional => 2,
+            Over::PathTracer => 1,
+        })
+    }
+
+    /// The integrator that draws the same image by independent samples.
+    #[must_use]
+    pub fn independent(&self) -> IntegratorSpec {
+        match self.over {
+            Over::Bidirectional => self.from_both_ends().into(),
+            Over::PathTracer => PathTracerSpec::of_all_lengths(self.transport.clone()).into(),
+        }
+    }
+
+    /// Bidirectional path tracing with the same paths.
+    pub(crate) fn from_both_ends(&self) -> BidirectionalSpec {
+        BidirectionalSpec {
+            light_paths_per_pixel: 1,
+            thickness: None,
+            connection_roulette: None,
+            point_caustics: false,
+            max_vertices: MOST_VERTICES as u32,
+            strategies: None,
+            weighted: true,
+            light_image: true,
+            transport: self.transport.clone(),
+        }
+    }
+}
+
+impl IntegratorKind for MetropolisSpec {
+    fn transport(&self) -> Option<&TransportSpec> {
+        Some(&self.transport)
+    }
+    fn bias(&self) -> Option<&'static str> {
+        super::of_a_baseline(self.transport.is_biased_baseline())
+    }
+}
