@@ -5,13 +5,13 @@ use super::integrator::{AnyIntegrator, SceneVolume, plain};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;
-use crate::spec::{MetropolisSpec, Over};
+use crate::spec::{Over, StepsSpec};
 use fairflight_media::{Line, LineThickness};
-use fairflight_metropolis::{FromBothEnds, FromCamera, Integrand, Plan, Primary};
+use fairflight_metropolis::{FromBothEnds, FromCamera, Integrand, Lengths, Multiplexed, Plan, Primary};
 use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{Integrator, PathTracer};
 use fairflight_scene::{Geometry, Segment, Spectrum, Surfaces};
-use fairflight_sources::{Layout, SmallStep, UniformSource};
+use fairflight_sources::{Layout, Seeded, SmallStep, UniformSource};
 
 /// Metropolis sampling whose parameters are checked.
 #[derive(Debug)]
@@ -22,32 +22,57 @@ pub struct MetropolisPlan {
     layout: Layout,
     large_step: f64,
     small_step: SmallStep,
-    bootstrap: Option<u64>,
-    chains: u32,
     first_order: u32,
+    /// The rule of what chains start from.
+    pub(crate) starts: ChainStarts,
     /// Independent images, at most one for each sample of a pixel.
     pub replicas: u32,
     /// True if so many replicas were asked for.
     is_asked_for: bool,
 }
 
+/// The states that chains start from, and their number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ChainStarts {
+    /// A few long chains for each replica.
+    Bootstrap {
+        /// Independent samples, of which starts are chosen; `None` for the usual share.
+        samples: Option<u64>,
+        /// Number of chains.
+        chains: u32,
+    },
+    /// Short chains for each sample, by the light that it found.
+    EverySample {
+        /// Steps of a chain.
+        steps: u64,
+        /// Chains of a sample on average.
+        chains: f64,
+        /// Most chains of a sample.
+        most: Option<u64>,
+    },
+}
+
 /// Replicas where nothing else is asked for.
 const REPLICAS: u32 = 16;
+/// Samples that tell the light of each length to multiplexed chains.
+const LENGTH_PILOT: u32 = 4096;
+/// The share of the geometric tail of lengths, and its ratio.
+const TAIL: (f64, f64) = (0.1, 0.9);
 
 /// Independent samples before the chains of a replica, where nothing else is asked for: a share of its mutations, and the most.
 const BOOTSTRAP: (u64, u64) = (10, 100_000);
 
 impl MetropolisPlan {
-    pub(super) fn build(spec: &MetropolisSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
+    /// The steps of a spec, with chains that start like this.
+    pub(super) fn build(spec: &StepsSpec, starts: ChainStarts, scene: &InScene<'_>) -> Result<Self, Failure> {
         Ok(Self {
             paths: BidirectionalPlan::build(&spec.from_both_ends(), scene)?,
             over: spec.over,
             layout: spec.rows,
             large_step: spec.large_step,
             small_step: spec.step,
-            bootstrap: spec.bootstrap,
-            chains: spec.chains,
             first_order: spec.first_order(),
+            starts,
             replicas: spec.replicas.unwrap_or(REPLICAS),
             is_asked_for: spec.replicas.is_some(),
         })
@@ -69,17 +94,23 @@ impl MetropolisPlan {
                 self.replicas
             )));
         }
-        self.sizes(pixels * u64::from(samples / self.replicas.min(samples))).map(|_| ())
+        match self.starts {
+            ChainStarts::Bootstrap { samples: first, chains } => {
+                let mutations = pixels * u64::from(samples / self.replicas.min(samples));
+                Self::sizes(first, chains, mutations).map(|_| ())
+            }
+            ChainStarts::EverySample { .. } => Ok(()),
+        }
     }
 
-    /// The sizes of a replica of so many mutations.
+    /// The sizes of a replica of so many mutations in so many chains.
     ///
     /// # Errors
     /// If they are fewer than the chains.
-    pub(crate) fn sizes(&self, mutations: u64) -> Result<Plan, Failure> {
+    pub(crate) fn sizes(bootstrap: Option<u64>, chains: u32, mutations: u64) -> Result<Plan, Failure> {
         let (share, most) = BOOTSTRAP;
-        let bootstrap = self.bootstrap.unwrap_or_else(|| (mutations / share).clamp(1, most));
-        Plan::new(bootstrap, self.chains.into(), mutations)
+        let bootstrap = bootstrap.unwrap_or_else(|| (mutations / share).clamp(1, most));
+        Plan::new(bootstrap, chains.into(), mutations)
             .map_err(|error| Failure::refused(format!("integrator.chains: {error}")))
     }
 
@@ -109,6 +140,18 @@ impl MetropolisPlan {
             Over::Bidirectional => {
                 let joined = self.paths.joined(volume, stage);
                 let mut integrand = FromBothEnds::new(joined).with_first_order(self.first_order);
+                work(&mut integrand);
+                integrand.integrator().truncated()
+            }
+            Over::Multiplexed => {
+                let mut joined = FromBothEnds::new(self.paths.joined(volume, stage));
+                // The same for all replicas, which no law asks for.
+                let light = joined.light_by_length(LENGTH_PILOT, &mut Seeded::new(0));
+                let seen = light.get(self.first_order as usize - 1..).unwrap_or_default();
+                let lengths = Lengths::new(self.first_order, seen, TAIL)
+                    .or_else(|_| Lengths::new(self.first_order, &[], TAIL))
+                    .expect("a tail is a law of lengths");
+                let mut integrand = Multiplexed::new(self.paths.joined(volume, stage), lengths);
                 work(&mut integrand);
                 integrand.integrator().truncated()
             }

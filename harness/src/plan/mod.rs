@@ -22,6 +22,7 @@ mod walk;
 pub use beam_radiance::BeamRadiancePlan;
 pub use bidirectional::BidirectionalPlan;
 pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, Splatted, TileIntegrator};
+pub(crate) use metropolis::ChainStarts;
 pub use metropolis::MetropolisPlan;
 pub use path_tracer::PathTracerPlan;
 pub use phase::AnyPhase;

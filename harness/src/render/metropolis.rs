@@ -4,25 +4,31 @@ use super::batch::Batch;
 use super::canvas::Spent;
 use super::draw::Draw;
 use super::replicas::{Chains, REPLICA_STREAM, Replica};
-use crate::plan::{MetropolisPlan, Stage};
+use crate::plan::{ChainStarts, MetropolisPlan, Stage};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::LineThickness;
-use fairflight_metropolis::{Integrand, Splats, Target};
+use fairflight_metropolis::{
+    Acceptance, Bootstrap, Film, Integrand, NotFinite, Plan, Redistribution, Splats, Target,
+};
 use fairflight_paths::transport::Emitters;
 use fairflight_photons::PhotonMap;
 use fairflight_scene::Spectrum;
 use fairflight_sources::{UniformSource, derive_seed};
+use fairflight_stats::Moments;
 use std::cell::Cell;
 
 /// Samples between two looks at the interrupt.
 const BREATH: u64 = 1024;
+/// Samples that tell how bright the image is, roughly, and their stream: no pixel has its number.
+const ENERGY_PILOT: u64 = 4096;
+const ENERGY_STREAM: u64 = u64::MAX - 5;
 
 /// An integrand that tells how far it is, and ends a chain that an interrupt has come for.
 struct Watched<'w, C> {
     integrand: &'w mut dyn Integrand<C>,
-    /// Samples that do not count: those before the chains.
-    before: u64,
+    /// Samples that are still to be told: those of a pilot or of a start that is drawn again are not.
+    left: u64,
     drawn: u64,
     advance: &'w (dyn Fn(u64) + Sync),
     interrupted: bool,
@@ -32,9 +38,9 @@ impl<C: Spectrum> Integrand<C> for Watched<'_, C> {
     fn sample(&mut self, splats: &mut Splats<C>, source: &mut dyn UniformSource) {
         self.drawn += 1;
         if self.drawn.is_multiple_of(BREATH) {
-            if self.drawn > self.before {
-                (self.advance)(BREATH.min(self.drawn - self.before));
-            }
+            let told = BREATH.min(self.left);
+            self.left -= told;
+            (self.advance)(told);
             if interrupt::check().is_err() {
                 // What is not finite ends the replica.
                 self.interrupted = true;
@@ -70,48 +76,104 @@ impl<C: Spectrum> Draw<'_, C> {
     ) -> Result<Replica<C>, Failure> {
         let clock = ThreadTime::now();
         let camera = &self.plan.camera;
-        let [columns, rows] = camera.resolution().map(u64::from);
-        let mutations = columns * rows * u64::from(samples);
-        let sizes = plan.sizes(mutations)?;
+        let [columns, rows] = camera.resolution().map(|side| side as usize);
         let (volume, unlawful, map) = (self.volume(medium), Cell::new(None), PhotonMap::new([]));
-        let (lights, surfaces) = (&self.radiant.lights, &self.radiant.surfaces);
-        let (mean, vpls, bound, unlawful_at) = (None, &[][..], f64::INFINITY, &unlawful);
-        let stage =
-            Stage { lights, surfaces, camera, emitters, mean, map: &map, vpls, bound, unlawful: unlawful_at };
-        let mut pixels = vec![C::ZERO; (columns * rows) as usize];
+        let stage = Stage {
+            lights: &self.radiant.lights,
+            surfaces: &self.radiant.surfaces,
+            camera,
+            emitters,
+            mean: None,
+            map: &map,
+            vpls: &[],
+            bound: f64::INFINITY,
+            unlawful: &unlawful,
+        };
+        let mut pixels = vec![C::ZERO; columns * rows];
+        let drawn = (columns * rows) as u64 * u64::from(samples);
         let mut made = None;
         let truncated = plan.over(&volume, stage, &mut |integrand| {
-            let before = sizes.evaluations() - mutations;
-            let advance = self.advance;
-            let mut watched = Watched { integrand, before, drawn: 0, advance, interrupted: false };
-            let replica = plan.target(&mut watched).map(|mut target| {
-                let seed = derive_seed(self.seed, REPLICA_STREAM);
-                let replica =
-                    sizes.replica(&mut target, (u64::from(index), seed), &mut |[column, row], value| {
-                        pixels[u64::from(row) as usize * columns as usize + column as usize] += value;
-                    });
-                (replica, target.kinds().to_vec())
+            let mut watched =
+                Watched { integrand, left: drawn, drawn: 0, advance: self.advance, interrupted: false };
+            let mut film = |[column, row]: [u32; 2], value| {
+                pixels[row as usize * columns + column as usize] += value;
+            };
+            let chains = plan.target(&mut watched).and_then(|mut target| match plan.starts {
+                ChainStarts::Bootstrap { samples, chains } => {
+                    let sizes = MetropolisPlan::sizes(samples, chains, drawn)?;
+                    self.long_chains(&mut target, sizes, index, &mut film)
+                }
+                ChainStarts::EverySample { steps, chains, most } => {
+                    self.short_chains(&mut target, (steps, chains, most), (index, drawn), &mut film)
+                }
             });
-            made = Some((replica, watched.interrupted));
+            made = Some((chains, watched.interrupted));
         });
         self.judge(&volume.medium)?;
         if let Some(unlawful) = unlawful.get() {
             return Err(self.plan.integrator.explain(unlawful));
         }
-        let Some((replica, interrupted)) = made else { return Err(Failure::Interrupted) };
-        if interrupted {
-            return Err(Failure::Interrupted);
-        }
-        let (replica, kinds) = replica?;
-        let replica =
-            replica.map_err(|refused| Failure::refused(format!("seed {}: {refused}", self.seed)))?;
-        let chains = Chains {
-            bootstrap: replica.bootstrap,
-            black: u32::from(replica.is_black),
-            steps: kinds.into_iter().zip(replica.acceptance).collect(),
+        let chains = match made {
+            Some((chains, false)) => chains?,
+            _ => return Err(Failure::Interrupted),
         };
         let cpu_seconds = clock.elapsed().as_secs_f64();
         let cost = Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated, ..Spent::default() };
         Ok(Replica { pixels, samples, cost, chains: Some(chains) })
+    }
+
+    /// A few long chains, from starts that independent samples chose.
+    fn long_chains(
+        &self,
+        target: &mut dyn Target<C>,
+        sizes: Plan,
+        index: u32,
+        film: &mut Film<'_, C>,
+    ) -> Result<Chains, Failure> {
+        let seed = derive_seed(self.seed, REPLICA_STREAM);
+        let replica = sizes
+            .replica(target, (index.into(), seed), film)
+            .map_err(|refused| Failure::refused(format!("seed {}: {refused}", self.seed)))?;
+        Ok(Chains {
+            bootstrap: replica.bootstrap,
+            black: replica.is_black.into(),
+            steps: target.kinds().iter().copied().zip(replica.acceptance).collect(),
+        })
+    }
+
+    /// Short chains from every sample, whose energy a pilot fixes before.
+    fn short_chains(
+        &self,
+        target: &mut dyn Target<C>,
+        (steps, chains, most): (u64, f64, Option<u64>),
+        (index, samples): (u32, u64),
+        film: &mut Film<'_, C>,
+    ) -> Result<Chains, Failure> {
+        let refused = |what: &dyn std::fmt::Display| Failure::refused(format!("seed {}: {what}", self.seed));
+        let pilot = Bootstrap::draw(target, ENERGY_PILOT, derive_seed(self.seed, ENERGY_STREAM))
+            .map_err(|(number, NotFinite)| refused(&format!("pilot sample {number} is not finite")))?;
+        // Where the pilot saw nothing any energy is right.
+        let brightness = Some(pilot.brightness()).filter(|&light| light > 0.0).unwrap_or(1.0);
+        let energy = brightness / (steps as f64 * chains);
+        let mut rule = Redistribution::new(steps, energy).map_err(|error| refused(&error))?;
+        if let Some(most) = most {
+            rule = rule.with_most_chains(most).map_err(|error| refused(&error))?;
+        }
+        let (share, mut weights) = (1.0 / samples as f64, Moments::new());
+        let mut acceptance = vec![Acceptance::default(); target.kinds().len()];
+        let seed = derive_seed(derive_seed(self.seed, REPLICA_STREAM), index.into());
+        for sample in 0..samples {
+            let mut film = |pixel, value: C| film(pixel, value * share);
+            let made =
+                rule.sample(target, (sample, seed), &mut acceptance, &mut film).map_err(|NotFinite| {
+                    refused(&format!("replica {index}, sample {sample}: a contribution is not finite"))
+                })?;
+            weights.push(made.weight);
+        }
+        Ok(Chains {
+            black: u32::from(weights.maximum() == Some(0.0)),
+            bootstrap: weights,
+            steps: target.kinds().iter().copied().zip(acceptance).collect(),
+        })
     }
 }

@@ -13,7 +13,10 @@ use crate::Failure;
 use crate::field::MediumLibrary;
 use crate::image::{Exposure, luminance};
 use crate::plan::{Radiant, ScenePlan, Spectra};
-use crate::spec::{BeamRadianceSpec, ComponentSpec, IntegratorSpec, PathTracerSpec, SceneSpec, VplSpec};
+use crate::spec::{
+    BeamRadianceSpec, ComponentSpec, EnergyRedistributionSpec, IntegratorSpec, MetropolisSpec,
+    PathTracerSpec, SceneSpec, VplSpec,
+};
 use fairflight_scene::{Camera, Geometry, Segment, Spectrum};
 use std::num::NonZeroU32;
 
@@ -73,7 +76,10 @@ fn pilot(spec: &SceneSpec) -> Result<SceneSpec, Failure> {
         | IntegratorSpec::BeamRadiance(BeamRadianceSpec { transport, .. }) => {
             pilot.integrator = PathTracerSpec::of_all_lengths(transport.clone()).into();
         }
-        IntegratorSpec::Metropolis(spec) => pilot.integrator = spec.independent(),
+        IntegratorSpec::Metropolis(MetropolisSpec { steps, .. })
+        | IntegratorSpec::EnergyRedistribution(EnergyRedistributionSpec { steps, .. }) => {
+            pilot.integrator = steps.independent();
+        }
         // Nor does that of any extension matter, which leave it as it is.
         IntegratorSpec::PathTracer(tracer) => {
             let PathTracerSpec { extension, light_candidates, reuse, .. } = tracer;

@@ -274,10 +274,18 @@ impl Walks {
         let rate = rate(plan);
         let most = (MOST / WALKS / shadow).clamp(16.0, 1e5) as u64;
         let mut pilot = reduced(spec, SIDE, 1)?;
-        if let IntegratorSpec::Metropolis(chains) = &pilot.integrator {
-            pilot.integrator = chains.independent();
+        let steps = match &pilot.integrator {
+            IntegratorSpec::Metropolis(chains) => Some((&chains.steps, 1.0)),
+            IntegratorSpec::EnergyRedistribution(spec) => {
+                Some((&spec.steps, 1.0 + spec.chain_length as f64 * spec.chains_per_sample))
+            }
+            _ => None,
+        };
+        let evaluations = steps.map_or(1.0, |(_, evaluations)| evaluations);
+        if let Some((steps, _)) = steps {
+            pilot.integrator = steps.independent();
         }
-        let mut scale = 1.0;
+        let mut scale = evaluations;
         match &mut pilot.integrator {
             IntegratorSpec::PathTracer(tracer) => {
                 tracer.max_vertices = tracer.max_vertices.min(most as u32);

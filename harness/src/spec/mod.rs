@@ -13,11 +13,12 @@ use crate::reader::Object;
 pub use experiment::{Experiment, Overrides};
 pub use scene::{
     BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec,
-    EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec, GuidedSpec, IntegratorKind, IntegratorSpec,
-    LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec, Over, Particles, PathTracerSpec, PhaseKind,
-    PhaseSpec, PointSpec, RectangleSpec, ResampledSpec, ReuseSpec, SamplingFieldSpec, SceneOverrides,
-    SceneSpec, ShapeKind, ShapeSpec, SingleScatteringSpec, SphereSpec, Strategy, SurfaceSpec, ThicknessSpec,
-    TracerSpec, TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
+    EnergyRedistributionSpec, EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec, GuidedSpec, IntegratorKind,
+    IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec, Over, Particles,
+    PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec, ResampledSpec, ReuseSpec,
+    SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind, ShapeSpec, SingleScatteringSpec, SphereSpec,
+    StepsSpec, Strategy, SurfaceSpec, ThicknessSpec, TracerSpec, TransmittanceSpec, TransportSpec,
+    VolumeSpec, VplSpec, WalkSpec,
 };
 pub use sweep::{Request, Sweep};
 

@@ -1,13 +1,13 @@
-//! Metropolis sampling.
+//! Metropolis sampling, and energy redistribution by its steps.
 
 use super::path_tracer::{MOST_VERTICES, PathTracerSpec};
 use super::transport::TransportSpec;
 use super::walk::Collisions;
 use super::{BidirectionalSpec, IntegratorKind, IntegratorSpec};
 use crate::reader::kind::Among;
-use crate::reader::rule::{Maybe, Rule, Whole};
+use crate::reader::rule::{Maybe, Nullable, Positive, Rule, Whole};
 use crate::reader::{Node, Object};
-use crate::{Failure, kind, words};
+use crate::{Failure, keys, kind, words};
 use fairflight_sources::{Layout, SmallStep};
 use serde_json::{Value, json};
 
@@ -32,6 +32,8 @@ pub enum Over {
     Bidirectional,
     /// Paths from the camera.
     PathTracer,
+    /// Paths from both ends, joined in one way each.
+    Multiplexed,
 }
 
 words! {
@@ -39,6 +41,7 @@ words! {
     pub(super) OverWord for Over {
         "bidirectional" => Over::Bidirectional,
         "path_tracer" => Over::PathTracer,
+        "multiplexed" => Over::Multiplexed,
     }
 }
 
@@ -50,13 +53,12 @@ words! {
     }
 }
 
-kind! {
-    /// Chains of paths (kelemen-2002, antwerpen-2011 chapter 6, raab-2008 section 4.4), among surfaces: replicas of the whole image, each without a
-    /// start-up bias.
-    MetropolisSpec = "metropolis" {
+keys! {
+    /// States of chains and their steps.
+    pub StepsSpec {
         /// The space that chains move in: the variates of an integrator.
         space: Space as SpaceWord,
-        /// The integrator whose variates they are.
+        /// The integrator whose variates they are: bidirectional, path_tracer, or multiplexed, which joins paths in one way each (hachisuka-2014).
         over: Over as OverWord,
         /// The order of variates: by the vertex that they are drawn for, or one after the other.
         rows: Layout as RowsWord = Layout::Rows,
@@ -64,19 +66,43 @@ kind! {
         large_step: f64 as Probability = 0.3,
         /// The least and the largest step of a variate.
         step: SmallStep as Steps = SmallStep::default(),
-        /// Independent samples of each replica, by which it chooses its starts and scales its image; by default a tenth of its mutations, at most 100000.
-        bootstrap: Option<u64> as Maybe<Whole<1, MOST>> = None,
-        /// Chains of each replica.
-        chains: u32 as Whole<1, MOST> = 1,
         /// Independent images, which share the samples: errors are told by them alone. By default 16, or one for each sample of a pixel.
         replicas: Option<u32> as Maybe<Whole<1, MOST_REPLICAS>> = None,
-        /// Edges of the shortest paths that chains make; with 2, which needs bidirectional, lights seen directly are drawn pixel by pixel. 2 over
-        /// bidirectional by default, else 1.
+        /// Edges of the shortest paths that chains make: with 2, which a path tracer cannot, lights seen directly are drawn pixel by pixel. 2 by default, 1
+        /// over path_tracer.
         first_order: Option<u32> as Maybe<Whole<1, 2>> = None,
         /// The flights, connections and weights of paths.
         transport: TransportSpec as Among,
     }
-    check MetropolisSpec::check
+}
+
+kind! {
+    /// Chains of paths (kelemen-2002, antwerpen-2011 chapter 6, raab-2008 section 4.4), among surfaces: replicas of the whole image, each without a
+    /// start-up bias.
+    MetropolisSpec = "metropolis" {
+        /// Independent samples of each replica, by which it chooses its starts and scales its image; by default a tenth of its mutations, at most 100000.
+        bootstrap: Option<u64> as Maybe<Whole<1, MOST>> = None,
+        /// Chains of each replica.
+        chains: u32 as Whole<1, MOST> = 1,
+        /// The states of chains and their steps.
+        steps: StepsSpec as Among,
+    }
+    check |spec, object| spec.steps.check(object)
+}
+
+kind! {
+    /// Short chains from every sample that finds light, as many as it found (cline-2005, antwerpen-2011 section 6.8), among surfaces.
+    EnergyRedistributionSpec = "energy_redistribution" {
+        /// Steps of a chain.
+        chain_length: u64 as Whole<1, MOST> = 100,
+        /// Chains of a sample, on average.
+        chains_per_sample: f64 as Positive = 1.0,
+        /// Most chains of a sample, each of which then carries more energy; null for any number.
+        most_chains: Option<u64> as Nullable<Whole<1, MOST>> = None,
+        /// The states of chains and their steps.
+        steps: StepsSpec as Among,
+    }
+    check |spec, object| spec.steps.check(object)
 }
 
 /// More are a slip of the keyboard.
@@ -118,7 +144,7 @@ impl Rule<SmallStep> for Steps {
     }
 }
 
-impl MetropolisSpec {
+impl StepsSpec {
     fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
         if self.transport.walk.colour == Collisions::Separate {
             return Err(object
@@ -127,7 +153,7 @@ impl MetropolisSpec {
         }
         if self.over == Over::PathTracer && self.first_order == Some(2) {
             return Err(object.required("first_order")?.refuse(
-                "2 needs over: bidirectional: the variates of a path tracer do not tell light seen directly apart",
+                "2 needs paths from both ends: the variates of a path tracer do not tell light seen directly apart",
             ));
         }
         Ok(())
@@ -137,7 +163,7 @@ impl MetropolisSpec {
     #[must_use]
     pub fn first_order(&self) -> u32 {
         self.first_order.unwrap_or(match self.over {
-            Over::Bidirectional => 2,
+            Over::Bidirectional | Over::Multiplexed => 2,
             Over::PathTracer => 1,
         })
     }
@@ -146,7 +172,7 @@ impl MetropolisSpec {
     #[must_use]
     pub fn independent(&self) -> IntegratorSpec {
         match self.over {
-            Over::Bidirectional => self.from_both_ends().into(),
+            Over::Bidirectional | Over::Multiplexed => self.from_both_ends().into(),
             Over::PathTracer => PathTracerSpec::of_all_lengths(self.transport.clone()).into(),
         }
     }
@@ -169,9 +195,18 @@ impl MetropolisSpec {
 
 impl IntegratorKind for MetropolisSpec {
     fn transport(&self) -> Option<&TransportSpec> {
-        Some(&self.transport)
+        Some(&self.steps.transport)
     }
     fn bias(&self) -> Option<&'static str> {
-        super::of_a_baseline(self.transport.is_biased_baseline())
+        super::of_a_baseline(self.steps.transport.is_biased_baseline())
+    }
+}
+
+impl IntegratorKind for EnergyRedistributionSpec {
+    fn transport(&self) -> Option<&TransportSpec> {
+        Some(&self.steps.transport)
+    }
+    fn bias(&self) -> Option<&'static str> {
+        super::of_a_baseline(self.steps.transport.is_biased_baseline())
     }
 }

@@ -17,7 +17,7 @@ pub use beam_radiance::BeamRadianceSpec;
 pub use bidirectional::{BidirectionalSpec, ThicknessSpec};
 pub use extension::{ExtensionSpec, GuidedSpec, ResampledSpec, ReuseSpec};
 pub use line_splitting::LineSplittingSpec;
-pub use metropolis::{MetropolisSpec, Over};
+pub use metropolis::{EnergyRedistributionSpec, MetropolisSpec, Over, StepsSpec};
 pub use particle_tracer::{Particles, TracerSpec};
 pub use path_tracer::PathTracerSpec;
 pub use single_scattering::{SingleScatteringSpec, Strategy};
@@ -40,6 +40,7 @@ registry! {
         Bidirectional(BidirectionalSpec),
         BeamRadiance(BeamRadianceSpec),
         Metropolis(MetropolisSpec),
+        EnergyRedistribution(EnergyRedistributionSpec),
     }
 }
 
@@ -86,7 +87,8 @@ impl IntegratorSpec {
             Self::Vpl(spec) => Some(&mut spec.transport.walk),
             Self::Bidirectional(spec) => Some(&mut spec.transport.walk),
             Self::BeamRadiance(spec) => Some(&mut spec.transport.walk),
-            Self::Metropolis(spec) => Some(&mut spec.transport.walk),
+            Self::Metropolis(spec) => Some(&mut spec.steps.transport.walk),
+            Self::EnergyRedistribution(spec) => Some(&mut spec.steps.transport.walk),
             Self::Transmittance(_) | Self::SingleScattering(_) => None,
         }
     }
