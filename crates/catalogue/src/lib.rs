@@ -24,6 +24,7 @@ mod estimators;
 mod extensions;
 mod function;
 mod hard_cases;
+mod metropolis;
 mod twins;
 
 pub mod bidirectional;

@@ -6,6 +6,7 @@ mod exactly;
 mod extensions;
 mod freeflight;
 mod media;
+mod metropolis;
 pub(crate) mod paths;
 mod phase;
 mod points;
@@ -191,7 +192,7 @@ impl Check {
 #[must_use]
 pub fn catalogue() -> Vec<Check> {
     let mut checks = joined!(
-        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, bidirectional, extensions, exactly
+        checks of exact, phase, media, estimators, freeflight, spectral, points, paths, vpl, bidirectional, extensions, metropolis, exactly
     );
     checks.extend(twins().into_iter().map(|twin| {
         let (id, samples, kinds) = (format!("twin/{}", twin.id), twin.samples, twin.kinds.clone());

@@ -9,6 +9,7 @@ mod exposure;
 mod extensions;
 mod info;
 mod lawful_runs;
+mod metropolis;
 mod misread;
 mod passes;
 mod rays_in_cells;

@@ -7,6 +7,7 @@ use fairflight_collision::Version;
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, Homogeneous, Line};
+use fairflight_metropolis::{Acceptance, FromCamera, Plan, Primary, Redistribution, Target};
 use fairflight_paths::single_scattering::{Sampling, SharedExplorers, SingleScattering, Technique};
 use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{
@@ -47,7 +48,7 @@ enum Exact {
     Vacuum,
 }
 
-const INTEGRATORS: [(&str, Exact, Radiance); 8] = [
+const INTEGRATORS: [(&str, Exact, Radiance); 10] = [
     ("transmittance", Exact::Absorbing, transmittance),
     ("particle_tracer", Exact::Furnace, particle_tracer),
     ("line_splitting", Exact::Furnace, line_splitting),
@@ -56,6 +57,8 @@ const INTEGRATORS: [(&str, Exact, Radiance); 8] = [
     ("vpl", Exact::Vacuum, vpl),
     ("bidirectional", Exact::Vacuum, bidirectional),
     ("beam_radiance", Exact::Vacuum, beam_radiance),
+    ("metropolis", Exact::Vacuum, metropolis),
+    ("energy_redistribution", Exact::Vacuum, energy_redistribution),
 ];
 
 /// Tells whether a kind is an integrator.
@@ -149,20 +152,56 @@ fn vpl(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
     VplIntegrator::new(gather, (1, pairing), correction).radiance(line, &mut source)
 }
 
+/// A camera of one pixel around a line.
+fn camera(line: &Line) -> Camera {
+    let up = if line.direction.cross(DVec3::Y) == DVec3::ZERO { DVec3::X } else { DVec3::Y };
+    Camera::new(line.origin, line.origin + line.direction, up, 1.0, [1, 1]).expect(LAWFUL)
+}
+
 /// The strategies of one camera ray.
 fn bidirectional(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -> f64 {
-    let (volume, lights) = (ball.volume(), lights());
+    let (volume, lights, camera) = (ball.volume(), lights(), camera(line));
     let world = World::new(&volume, &NoSurfaces, &lights);
     let emitters = Emitters::new(&lights, &NoSurfaces, world.enclosing_ball(), line.origin);
-    let up = if line.direction.cross(DVec3::Y) == DVec3::ZERO { DVec3::X } else { DVec3::Y };
-    let at = line.origin + line.direction;
-    let camera = Camera::new(line.origin, at, up, 1.0, [1, 1]).expect(LAWFUL);
     let (thickness, heuristic) = (Neglected, Heuristic::Balance);
     let weigh = Weigh { world, camera: &camera, emitters: &emitters, thickness, heuristic, light_paths: 1.0 };
     let mut integrator = Bidirectional::new(weigh, Walking::new(ball.walk()), Regular);
     let mut light = Subpath::empty();
     integrator.trace_light(&mut light, &mut source);
     integrator.radiance(line, &light, &mut source)
+}
+
+/// Chains of path tracing, by `draw`, which gives what they add to the only pixel.
+fn chained(
+    ball: &Ball,
+    line: &Line,
+    draw: impl FnOnce(&mut dyn Target<f64>, &mut dyn FnMut([u32; 2], f64)),
+) -> f64 {
+    let (volume, lights, camera) = (ball.volume(), lights(), camera(line));
+    let world = World::new(&volume, &NoSurfaces, &lights);
+    let tracer = PathTracer::new(world, ball.walk(), Ratio(ball.sampling()), Heuristic::Balance);
+    let mut integrand = FromCamera::new(&camera, tracer);
+    let mut sum = 0.0;
+    draw(&mut Primary::new(&mut integrand), &mut |_, value| sum += value);
+    sum
+}
+
+/// A replica of a few steps.
+fn metropolis(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    let plan = Plan::new(2, 1, 4).expect(LAWFUL);
+    let seed = source.next_uniform().to_bits();
+    chained(ball, line, |target, film| {
+        plan.replica(target, (0, seed), film).expect("contributions are finite");
+    })
+}
+
+/// The energy of one sample, in chains of a few steps.
+fn energy_redistribution(ball: &Ball, line: &Line, source: &mut dyn UniformSource) -> f64 {
+    let rule = Redistribution::new(4, 0.25).expect(LAWFUL);
+    let (seed, mut counts) = (source.next_uniform().to_bits(), [Acceptance::default(); 2]);
+    chained(ball, line, |target, film| {
+        rule.sample(target, (0, seed), &mut counts, film).expect("contributions are finite");
+    })
 }
 
 /// The photons of one light path.

@@ -76,7 +76,7 @@ const UNCONNECTED: [&str; 6] = [
     "beam_radiance",
 ];
 
-const REASONS: [Reason; 20] = [
+const REASONS: [Reason; 21] = [
     Reason {
         rows: &[3, 13, 21],
         kinds: Kinds::Integrators,
@@ -92,6 +92,11 @@ const REASONS: [Reason; 20] = [
         rows: &[7, 9, 10, 11, 20],
         kinds: Kinds::Integrators,
         why: "what varies along a line is met by its estimators and by the collisions of single_particle",
+    },
+    Reason {
+        rows: &[16, 17, 18, 19],
+        kinds: Kinds::These(&["metropolis", "energy_redistribution"]),
+        why: "its paths are those of the integrator whose variates it moves, which meets the row itself",
     },
     Reason {
         rows: &[15],
