@@ -12,7 +12,7 @@
 //! | [`Redistribution`] | cline-2005, antwerpen-2011 6.8 | chains from every sample that finds light |
 //! | [`Importance`] | hoberock-2010, antwerpen-2011 6.7 | more of a chain where the image is noisy |
 //! | [`Kernels`] | lai-2007, antwerpen-2011 6.9 | sizes of steps, learnt from other replicas |
-//! | [`Mutation`] | antwerpen-2011 6.3 | steps in path space |
+//! | [`Mutation`], [`path`] | antwerpen-2011 6.3, 6.4 | steps in path space |
 //! | [`laws`] | | one step judged by independent states |
 //!
 //! A replica is unbiased for every length of its chains, also where they reach no more than a part of the light: what multiplies its scores
@@ -48,6 +48,7 @@ pub mod laws;
 mod lengths;
 mod multiplexed;
 mod mutation;
+pub mod path;
 mod population;
 mod primary;
 mod redistribution;
