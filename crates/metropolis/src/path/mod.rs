@@ -13,7 +13,7 @@
 //!
 //! None of these changes the number or the kinds of vertices, and none chooses by anything else: no probability of a choice is left in a ratio. [`Fresh`]
 //! draws a path independently of the old one, by the strategies of the bidirectional integrator.
-//! Transmittance is a closed form, or the product over [`NullCollisions`] that belong to the state.
+//! [`PathTarget`] makes chains of them. Transmittance is a closed form, or the product over [`NullCollisions`] that belong to the state.
 
 mod caustic;
 mod coordinates;
@@ -25,6 +25,7 @@ mod propagation;
 mod proposal;
 mod scattering;
 mod state;
+mod target;
 mod world;
 
 pub use caustic::Caustic;
@@ -36,4 +37,5 @@ pub use propagation::Propagation;
 pub use proposal::StepSizes;
 pub use scattering::Scattering;
 pub use state::{PathEdge, PathSite, PathState, PathVertex, Towards};
+pub use target::{Named, NoMutation, PathTarget};
 pub use world::{EdgeTransmittance, Met, PathWorld, View};
