@@ -165,6 +165,11 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Bidirectional<'s, W, K> {
         &self.weigh
     }
 
+    /// The rules of its walks.
+    pub fn walking(&self) -> &Walking<W::Sampling> {
+        &self.walking
+    }
+
     /// The eye subpath of the last sample.
     pub fn eye(&self) -> &Subpath<W::Spectrum> {
         &self.eye

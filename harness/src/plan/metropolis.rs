@@ -1,13 +1,16 @@
-//! Metropolis sampling: its parameters checked, the integrand that chains move over, and the integrator of what they leave out.
+//! Metropolis sampling: its parameters checked, the target of chains, and the integrator of what they leave out.
 
 use super::bidirectional::BidirectionalPlan;
 use super::integrator::{AnyIntegrator, SceneVolume, plain};
+use super::path_space::PathSpace;
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;
 use crate::spec::{Over, StepsSpec};
 use fairflight_media::{Line, LineThickness};
-use fairflight_metropolis::{FromBothEnds, FromCamera, Integrand, Lengths, Multiplexed, Plan, Primary};
+use fairflight_metropolis::{
+    FromBothEnds, FromCamera, Integrand, Lengths, Multiplexed, Plan, Primary, Target,
+};
 use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{Integrator, PathTracer};
 use fairflight_scene::{Geometry, Segment, Spectrum, Surfaces};
@@ -18,7 +21,9 @@ use fairflight_sources::{Layout, Seeded, SmallStep, UniformSource};
 pub struct MetropolisPlan {
     /// Paths from both ends, with the flights and connections of all.
     pub(super) paths: BidirectionalPlan,
-    over: Over,
+    /// `None` for chains of paths.
+    over: Option<Over>,
+    space: PathSpace,
     layout: Layout,
     large_step: f64,
     small_step: SmallStep,
@@ -68,6 +73,7 @@ impl MetropolisPlan {
         Ok(Self {
             paths: BidirectionalPlan::build(&spec.from_both_ends(), scene)?,
             over: spec.over,
+            space: PathSpace::build(spec, scene)?,
             layout: spec.rows,
             large_step: spec.large_step,
             small_step: spec.step,
@@ -115,54 +121,55 @@ impl MetropolisPlan {
     }
 
     /// Chains over `integrand`.
-    ///
-    /// # Errors
-    /// If the probability of a large step is none.
-    pub(crate) fn target<'i, C: Spectrum>(
+    fn over<C: Spectrum>(
         &self,
-        integrand: &'i mut dyn Integrand<C>,
-    ) -> Result<Primary<'i, C>, Failure> {
+        integrand: &mut dyn Integrand<C>,
+        work: &mut dyn FnMut(&mut dyn Target<C>),
+    ) -> Result<(), Failure> {
         let target = Primary::new(integrand).with_small_step(self.small_step).with_layout(self.layout);
-        target
-            .with_large_step(self.large_step)
-            .map_err(|error| Failure::refused(format!("integrator.large_step: {error}")))
+        let target = target.with_large_step(self.large_step);
+        work(&mut target.map_err(|error| Failure::refused(format!("integrator.large_step: {error}")))?);
+        Ok(())
     }
 
-    /// Does `work` with the integrand in a volume; gives the number of walks that were cut.
-    pub(crate) fn over<'s, M: LineThickness + 's, C: Spectrum + 's>(
+    /// Does `work` with the target of chains in a volume; gives the number of walks that were cut.
+    ///
+    /// # Errors
+    /// If a parameter is not lawful there.
+    pub(crate) fn with_target<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
         stage: Stage<'s, C>,
-        work: &mut dyn FnMut(&mut dyn Integrand<C>),
-    ) -> u64 {
+        work: &mut dyn FnMut(&mut dyn Target<C>),
+    ) -> Result<u64, Failure> {
         let Stage { lights, surfaces, camera, unlawful, .. } = stage;
+        let joined = || self.paths.joined(volume, stage);
         match self.over {
-            Over::Bidirectional => {
-                let joined = self.paths.joined(volume, stage);
-                let mut integrand = FromBothEnds::new(joined).with_first_order(self.first_order);
-                work(&mut integrand);
-                integrand.integrator().truncated()
+            None => self.space.with_target(joined(), work),
+            Some(Over::Bidirectional) => {
+                let mut integrand = FromBothEnds::new(joined()).with_first_order(self.first_order);
+                self.over(&mut integrand, work)?;
+                Ok(integrand.integrator().truncated())
             }
-            Over::Multiplexed => {
-                let mut joined = FromBothEnds::new(self.paths.joined(volume, stage));
+            Some(Over::Multiplexed) => {
                 // The same for all replicas, which no law asks for.
-                let light = joined.light_by_length(LENGTH_PILOT, &mut Seeded::new(0));
+                let light = FromBothEnds::new(joined()).light_by_length(LENGTH_PILOT, &mut Seeded::new(0));
                 let seen = light.get(self.first_order as usize - 1..).unwrap_or_default();
                 let lengths = Lengths::new(self.first_order, seen, TAIL)
                     .or_else(|_| Lengths::new(self.first_order, &[], TAIL))
                     .expect("a tail is a law of lengths");
-                let mut integrand = Multiplexed::new(self.paths.joined(volume, stage), lengths);
-                work(&mut integrand);
-                integrand.integrator().truncated()
+                let mut integrand = Multiplexed::new(joined(), lengths);
+                self.over(&mut integrand, work)?;
+                Ok(integrand.integrator().truncated())
             }
-            Over::PathTracer => {
+            Some(Over::PathTracer) => {
                 let TransportPlan { walk, shadow, heuristic } = self.transport();
                 let world = World::<Seen<'s, M, C, Surfaces<C>>>::new(volume, surfaces, lights);
                 let tracer = PathTracer::new(world, walk.walk(), shadow.worker(unlawful), *heuristic)
                     .with_max_vertices(self.paths.max_vertices);
                 let mut integrand = FromCamera::new(camera, tracer);
-                work(&mut integrand);
-                integrand.integrator().truncated()
+                self.over(&mut integrand, work)?;
+                Ok(integrand.integrator().truncated())
             }
         }
     }

@@ -9,6 +9,7 @@ mod bidirectional;
 mod integrator;
 mod metropolis;
 mod passes;
+mod path_space;
 mod path_tracer;
 mod phase;
 mod rays;

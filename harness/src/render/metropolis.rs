@@ -9,7 +9,7 @@ use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::LineThickness;
 use fairflight_metropolis::{
-    Acceptance, Bootstrap, Film, Integrand, NotFinite, Plan, Redistribution, Splats, Target,
+    Acceptance, Bootstrap, Film, NotFinite, Plan, Proposed, Redistribution, Target, Which,
 };
 use fairflight_paths::transport::Emitters;
 use fairflight_photons::PhotonMap;
@@ -24,9 +24,9 @@ const BREATH: u64 = 1024;
 const ENERGY_PILOT: u64 = 4096;
 const ENERGY_STREAM: u64 = u64::MAX - 5;
 
-/// An integrand that tells how far it is, and ends a chain that an interrupt has come for.
+/// A target that tells how far its chains are, and ends one that an interrupt has come for.
 struct Watched<'w, C> {
-    integrand: &'w mut dyn Integrand<C>,
+    target: &'w mut dyn Target<C>,
     /// Samples that are still to be told: those of a pilot or of a start that is drawn again are not.
     left: u64,
     drawn: u64,
@@ -34,20 +34,36 @@ struct Watched<'w, C> {
     interrupted: bool,
 }
 
-impl<C: Spectrum> Integrand<C> for Watched<'_, C> {
-    fn sample(&mut self, splats: &mut Splats<C>, source: &mut dyn UniformSource) {
+impl<C> Watched<'_, C> {
+    /// Counts a sample; false if an interrupt came.
+    fn goes_on(&mut self) -> bool {
         self.drawn += 1;
         if self.drawn.is_multiple_of(BREATH) {
             let told = BREATH.min(self.left);
             self.left -= told;
             (self.advance)(told);
-            if interrupt::check().is_err() {
-                // What is not finite ends the replica.
-                self.interrupted = true;
-                return splats.push([0; 2], C::splat(f64::NAN));
-            }
+            self.interrupted |= interrupt::check().is_err();
         }
-        self.integrand.sample(splats, source);
+        !self.interrupted
+    }
+}
+
+/// What is not finite ends a replica.
+impl<C> Target<C> for Watched<'_, C> {
+    fn draw(&mut self, source: &mut dyn UniformSource) -> f64 {
+        if self.goes_on() { self.target.draw(source) } else { f64::NAN }
+    }
+    fn propose(&mut self, source: &mut dyn UniformSource) -> Proposed {
+        if self.goes_on() { self.target.propose(source) } else { Proposed { kind: 0, acceptance: f64::NAN } }
+    }
+    fn accept(&mut self) {
+        self.target.accept();
+    }
+    fn deposit(&self, which: Which, energy: f64, film: &mut Film<'_, C>) {
+        self.target.deposit(which, energy, film);
+    }
+    fn kinds(&self) -> &[&'static str] {
+        self.target.kinds()
     }
 }
 
@@ -92,27 +108,26 @@ impl<C: Spectrum> Draw<'_, C> {
         let mut pixels = vec![C::ZERO; columns * rows];
         let drawn = (columns * rows) as u64 * u64::from(samples);
         let mut made = None;
-        let truncated = plan.over(&volume, stage, &mut |integrand| {
-            let mut watched =
-                Watched { integrand, left: drawn, drawn: 0, advance: self.advance, interrupted: false };
+        let truncated = plan.with_target(&volume, stage, &mut |target| {
+            let mut target =
+                Watched { target, left: drawn, drawn: 0, advance: self.advance, interrupted: false };
             let mut film = |[column, row]: [u32; 2], value| {
                 pixels[row as usize * columns + column as usize] += value;
             };
-            let chains = plan.target(&mut watched).and_then(|mut target| match plan.starts {
-                ChainStarts::Bootstrap { samples, chains } => {
-                    let sizes = MetropolisPlan::sizes(samples, chains, drawn)?;
-                    self.long_chains(&mut target, sizes, index, &mut film)
-                }
+            let chains = match plan.starts {
+                ChainStarts::Bootstrap { samples, chains } => MetropolisPlan::sizes(samples, chains, drawn)
+                    .and_then(|sizes| self.long_chains(&mut target, sizes, index, &mut film)),
                 ChainStarts::EverySample { steps, chains, most } => {
                     self.short_chains(&mut target, (steps, chains, most), (index, drawn), &mut film)
                 }
-            });
-            made = Some((chains, watched.interrupted));
+            };
+            made = Some((chains, target.interrupted));
         });
         self.judge(&volume.medium)?;
         if let Some(unlawful) = unlawful.get() {
             return Err(self.plan.integrator.explain(unlawful));
         }
+        let truncated = truncated?;
         let chains = match made {
             Some((chains, false)) => chains?,
             _ => return Err(Failure::Interrupted),

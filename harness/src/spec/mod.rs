@@ -14,8 +14,8 @@ pub use experiment::{Experiment, Overrides};
 pub use scene::{
     BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec,
     EnergyRedistributionSpec, EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec, GuidedSpec, IntegratorKind,
-    IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec, Over, Particles,
-    PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec, ResampledSpec, ReuseSpec,
+    IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec, MutationKind, Over,
+    Particles, PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec, ResampledSpec, ReuseSpec,
     SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind, ShapeSpec, SingleScatteringSpec, SphereSpec,
     StepsSpec, Strategy, SurfaceSpec, ThicknessSpec, TracerSpec, TransmittanceSpec, TransportSpec,
     VolumeSpec, VplSpec, WalkSpec,

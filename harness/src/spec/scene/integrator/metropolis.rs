@@ -16,12 +16,15 @@ use serde_json::{Value, json};
 pub enum Space {
     /// Variates of an integrator.
     Primary,
+    /// Paths.
+    Path,
 }
 
 words! {
     /// The space that chains move in.
     pub(super) SpaceWord for Space {
         "primary" => Space::Primary,
+        "path" => Space::Path,
     }
 }
 
@@ -56,10 +59,13 @@ words! {
 keys! {
     /// States of chains and their steps.
     pub StepsSpec {
-        /// The space that chains move in: the variates of an integrator.
+        /// The space that chains move in: the variates of an integrator, or paths of bidirectional path tracing.
         space: Space as SpaceWord,
-        /// The integrator whose variates they are: bidirectional, path_tracer, or multiplexed, which joins paths in one way each (hachisuka-2014).
-        over: Over as OverWord,
+        /// The integrator whose variates they are, in primary space: bidirectional, path_tracer, or multiplexed, which joins paths in one way each
+        /// (hachisuka-2014).
+        over: Option<Over> as Maybe<OverWord> = None,
+        /// The mutations of paths, in path space, each as probable; all by default, bidirectional with a closed form only.
+        mutations: Option<Vec<MutationKind>> as Maybe<Mutations> = None,
         /// The order of variates: by the vertex that they are drawn for, or one after the other.
         rows: Layout as RowsWord = Layout::Rows,
         /// The probability of a step that draws all variates afresh; with 0 a chain stays in the mode where it starts, without a bias.
@@ -68,7 +74,7 @@ keys! {
         step: SmallStep as Steps = SmallStep::default(),
         /// Independent images, which share the samples: errors are told by them alone. By default 16, or one for each sample of a pixel.
         replicas: Option<u32> as Maybe<Whole<1, MOST_REPLICAS>> = None,
-        /// Edges of the shortest paths that chains make: with 2, which a path tracer cannot, lights seen directly are drawn pixel by pixel. 2 by default, 1
+        /// Edges of the shortest paths that chains make: with 2, which a path tracer cannot, and path space must, lights seen directly are drawn pixel by pixel. 2 by default, 1
         /// over path_tracer.
         first_order: Option<u32> as Maybe<Whole<1, 2>> = None,
         /// The flights, connections and weights of paths.
@@ -110,6 +116,53 @@ const MOST: u64 = 1_000_000_000;
 /// Each replica is an image in memory.
 const MOST_REPLICAS: u64 = 1_000;
 
+/// A mutation of paths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MutationKind {
+    /// Another point of the film, distances kept or scaled.
+    Lens,
+    /// The same onto the places of smooth vertices.
+    LaiLens,
+    /// Another direction towards the camera.
+    Caustic,
+    /// Another direction at a vertex in the medium, towards the camera or the light.
+    Scattering,
+    /// Another distance of a vertex in the medium, along either edge.
+    Propagation,
+    /// A fresh path.
+    Bidirectional,
+}
+
+words! {
+    /// A mutation of paths.
+    pub(super) MutationWord for MutationKind {
+        "lens" => MutationKind::Lens,
+        "lai_lens" => MutationKind::LaiLens,
+        "caustic" => MutationKind::Caustic,
+        "scattering" => MutationKind::Scattering,
+        "propagation" => MutationKind::Propagation,
+        "bidirectional" => MutationKind::Bidirectional,
+    }
+}
+
+/// A list of mutations, not empty.
+#[derive(Debug)]
+pub(super) struct Mutations;
+
+impl Rule<Vec<MutationKind>> for Mutations {
+    fn read(node: &Node<'_>) -> Result<Vec<MutationKind>, Failure> {
+        let kinds: Vec<_> =
+            node.items()?.iter().map(<MutationWord as Rule<_>>::read).collect::<Result<_, _>>()?;
+        if kinds.is_empty() { Err(node.refuse("must name at least one mutation")) } else { Ok(kinds) }
+    }
+    fn written(kinds: &Vec<MutationKind>) -> Value {
+        kinds.iter().map(<MutationWord as Rule<_>>::written).collect()
+    }
+    fn schema() -> Value {
+        json!({ "type": "array", "items": <MutationWord as Rule<MutationKind>>::schema(), "minItems": 1 })
+    }
+}
+
 /// A number from 0 to 1.
 #[derive(Debug)]
 pub(super) struct Probability;
@@ -146,12 +199,29 @@ impl Rule<SmallStep> for Steps {
 
 impl StepsSpec {
     fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
+        let (own, other, foreign) = match self.space {
+            Space::Primary => ("primary", "path", &["mutations"][..]),
+            Space::Path => ("path", "primary", &["over", "rows", "large_step", "step"][..]),
+        };
+        if let Some(key) = foreign.iter().find(|key| object.has(key)) {
+            return Err(object
+                .required("space")?
+                .refuse(format!("{own} has no {key}: that is a key of {other}")));
+        }
+        if self.space == Space::Primary && self.over.is_none() {
+            object.required("over")?;
+        }
+        if self.space == Space::Path && self.first_order == Some(1) {
+            return Err(object
+                .required("first_order")?
+                .refuse("1 needs space: primary: no mutation changes a path of one edge"));
+        }
         if self.transport.walk.colour == Collisions::Separate {
             return Err(object
                 .required("colour")?
                 .refuse("separate would be three targets: render three scenes"));
         }
-        if self.over == Over::PathTracer && self.first_order == Some(2) {
+        if self.over == Some(Over::PathTracer) && self.first_order == Some(2) {
             return Err(object.required("first_order")?.refuse(
                 "2 needs paths from both ends: the variates of a path tracer do not tell light seen directly apart",
             ));
@@ -162,18 +232,15 @@ impl StepsSpec {
     /// Edges of the shortest paths that chains make.
     #[must_use]
     pub fn first_order(&self) -> u32 {
-        self.first_order.unwrap_or(match self.over {
-            Over::Bidirectional | Over::Multiplexed => 2,
-            Over::PathTracer => 1,
-        })
+        self.first_order.unwrap_or(if self.over == Some(Over::PathTracer) { 1 } else { 2 })
     }
 
     /// The integrator that draws the same image by independent samples.
     #[must_use]
     pub fn independent(&self) -> IntegratorSpec {
         match self.over {
-            Over::Bidirectional | Over::Multiplexed => self.from_both_ends().into(),
-            Over::PathTracer => PathTracerSpec::of_all_lengths(self.transport.clone()).into(),
+            None | Some(Over::Bidirectional | Over::Multiplexed) => self.from_both_ends().into(),
+            Some(Over::PathTracer) => PathTracerSpec::of_all_lengths(self.transport.clone()).into(),
         }
     }
 
