@@ -61,7 +61,7 @@ pub(crate) const REPORTS: [ReportKind; 7] = [
         name: "bidirectional",
         about: "paths joined from both ends: gain over path tracing and its extensions, strategies, a point light, weights",
         takes_volume: false,
-        takes: ["3.2 min", "9 s"],
+        takes: ["2.3 min", "6 s"],
         study: |run| Finished::of(bidirectional::document(run)?),
     },
     ReportKind {
