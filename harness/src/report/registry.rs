@@ -54,7 +54,7 @@ pub(crate) const REPORTS: [ReportKind; 7] = [
         name: "vpl",
         about: "virtual point lights: clamping, strategies of compensation, costs, anisotropy; the beam radiance estimate",
         takes_volume: false,
-        takes: ["3.6 min", "24 s"],
+        takes: ["4.6 min", "15 s"],
         study: |run| Finished::of(virtual_lights::document(run)?),
     },
     ReportKind {
