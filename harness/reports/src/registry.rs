@@ -52,16 +52,16 @@ pub const REPORTS: [ReportKind; 7] = [
     },
     ReportKind {
         name: "vpl",
-        about: "virtual point lights: clamping, strategies of bias compensation, approximations, costs, anisotropy",
+        about: "virtual point lights: clamping, strategies of compensation, costs, anisotropy; the beam radiance estimate",
         takes_volume: false,
-        takes: ["3.6 min", "24 s"],
+        takes: ["4.6 min", "15 s"],
         study: |run| Finished::of(virtual_lights::document(run)?),
     },
     ReportKind {
         name: "bidirectional",
-        about: "paths joined from both ends: gain over path tracing, strategies, a point light in haze, weights",
+        about: "paths joined from both ends: gain over path tracing and its extensions, strategies, a point light, weights",
         takes_volume: false,
-        takes: ["3.2 min", "9 s"],
+        takes: ["2.3 min", "6 s"],
         study: |run| Finished::of(bidirectional::document(run)?),
     },
     ReportKind {

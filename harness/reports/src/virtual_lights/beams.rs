@@ -45,8 +45,6 @@ struct Point {
     bias: Measured,
     /// Variance of an image of one CPU second, likewise \[radiance²\].
     noise: Measured,
-    /// Mean squared error of an image of each of the [`TIMES`]: bias² + variance/time, where a square below 0 is noise and counts as 0.
-    errors: [Measured; TIMES.len()],
     images: Replicas,
 }
 
@@ -64,18 +62,19 @@ impl Point {
     fn of(room: &Reference, (surfaces, photons, radius): (&'static str, u32, f64), images: Replicas) -> Self {
         let seconds = images.seconds();
         let of = |function: &dyn Fn([f64; 2]) -> f64| images.bias_and_variance(&room.shown, function);
-        let error = |time: f64| {
-            of(&|[bias, variance]| (bias.max(0.0) + variance * seconds / time).ln()).map(f64::exp)
-        };
         let (bias, noise) =
             (of(&|[bias, _]| bias), of(&|[_, variance]| (variance * seconds).ln()).map(f64::exp));
         let seconds = seconds / f64::from(images.rays_per_pixel());
-        Self { surfaces, photons, radius, seconds, bias, noise, errors: TIMES.map(error), images }
+        Self { surfaces, photons, radius, seconds, bias, noise, images }
     }
 
-    /// Mean squared error of an image of `time` CPU seconds; none where that is less than one map takes.
-    fn error(&self, time: f64) -> Option<f64> {
-        (self.seconds <= time).then(|| self.bias.value.max(0.0) + self.noise.value / time)
+    /// Mean squared error of an image of `time` CPU seconds: bias² + variance/time, where a square below 0 is noise and counts as 0. The ends of
+    /// the interval are those of both.
+    fn error(&self, time: f64) -> Measured {
+        let sum = |bias: f64, noise: f64| bias.max(0.0) + noise / time;
+        let (bias, noise) = (&self.bias, &self.noise);
+        let interval = [0, 1].map(|end| sum(bias.interval[end], noise.interval[end]));
+        Measured { value: sum(bias.value, noise.value), interval }
     }
 
     /// Words for the CPU seconds until an unbiased method of this MSE · CPU seconds has the lesser error; their interval is that of the bias.
@@ -98,10 +97,10 @@ pub(super) struct Beams {
 }
 
 impl Beams {
-    /// The point of the least error in this time.
+    /// The point of the least error of those whose first map is done in this time.
     fn best(&self, time: f64) -> Option<&Point> {
-        let all = self.points.iter().filter_map(|point| Some((point, point.error(time)?)));
-        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(point, _)| point)
+        let all = self.points.iter().filter(|point| point.seconds <= time);
+        all.min_by(|a, b| a.error(time).value.total_cmp(&b.error(time).value))
     }
 }
 
@@ -135,31 +134,31 @@ pub(super) fn study(run: &Run<'_>, room: &Reference, strategies: &Strategies) ->
 
 /// The findings, one sentence for each time.
 pub(super) fn summary(beams: &Beams) -> Vec<String> {
-    let of_time = |(k, &time): (usize, &f64)| {
+    let of_time = |&time: &f64| {
         let best = beams.best(time)?;
         let of_rival = |(name, cost): &(&str, Measured)| {
-            let ratio = cost.map(|cost| cost / time).over(&best.errors[k]);
+            let ratio = cost.map(|cost| cost / time).over(&best.error(time));
             format!("{name} {} of that ({})", ratio.words(2), best.until(cost.value))
         };
         let rivals: Vec<String> = beams.rivals.iter().map(of_rival).collect();
         Some(format!(
             "In {time} CPU s the best beam radiance estimate ({}) has a mean squared error of {:.1e} radiance²; {}.",
             best.words(),
-            best.errors[k].value,
+            best.error(time).value,
             rivals.join(", ")
         ))
     };
-    TIMES.iter().enumerate().filter_map(of_time).collect()
+    TIMES.iter().filter_map(of_time).collect()
 }
 
 /// E7. Criterion: at each of the [`TIMES`] 1-to-1 has more error than the best radius and number of photons, by 95 % intervals.
 pub(super) fn e7(beams: &Beams) -> Claim {
     let cost = beams.rivals[0].1;
-    let is_ahead = |(k, &time): (usize, &f64)| {
-        let ratio = beams.best(time).map(|best| cost.map(|cost| cost / time).over(&best.errors[k]));
+    let is_ahead = |&time: &f64| {
+        let ratio = beams.best(time).map(|best| cost.map(|cost| cost / time).over(&best.error(time)));
         ratio.and_then(|ratio| ratio.exceeds(1.0)) == Some(true)
     };
-    let verdict = ClaimVerdict::of_cases(TIMES.iter().enumerate().map(is_ahead));
+    let verdict = ClaimVerdict::of_cases(TIMES.iter().map(is_ahead));
     Claim::new(
         ("E7", "engelhardt-2013 4, fig. 12"),
         "At equal time the beam radiance estimate has less error, bias included, than compensated virtual point lights",
@@ -194,9 +193,9 @@ pub(super) fn section(run: &Run<'_>, room: &Reference, beams: &Beams) -> Section
             ("time of a map", "s", &|point| Cell::Number(point.seconds)),
             ("bias²", "radiance²", &|point| point.bias.cell()),
             ("variance · CPU seconds", "radiance² s", &|point| point.noise.cell()),
-            ("MSE in 0.1 s", "radiance²", &|point| point.errors[0].cell()),
-            ("MSE in 1 s", "radiance²", &|point| point.errors[1].cell()),
-            ("MSE in 10 s", "radiance²", &|point| point.errors[2].cell()),
+            ("MSE in 0.1 s", "radiance²", &|point| point.error(TIMES[0]).cell()),
+            ("MSE in 1 s", "radiance²", &|point| point.error(TIMES[1]).cell()),
+            ("MSE in 10 s", "radiance²", &|point| point.error(TIMES[2]).cell()),
             ("ahead of 1-to-1", "", &|point| Cell::text(point.until(beams.rivals[0].1.value))),
         ],
     );
@@ -204,8 +203,8 @@ pub(super) fn section(run: &Run<'_>, room: &Reference, beams: &Beams) -> Section
     let by_radius = RADII.iter().map(|radius| {
         let points = || beams.points.iter().filter(move |point| point.radius == *radius);
         let least = |&time: &f64| {
-            let errors = points().filter_map(|point| point.error(time));
-            (time, errors.min_by(f64::total_cmp).map(f64::sqrt))
+            let done = points().filter(|point| point.seconds <= time);
+            (time, done.map(|point| point.error(time).value).min_by(f64::total_cmp).map(f64::sqrt))
         };
         Curve::method(&format!("radius {radius}")).with_gaps(times.iter().map(least))
     });
