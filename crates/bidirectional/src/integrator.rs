@@ -4,7 +4,7 @@ use crate::{LightEnd, Node, Step, Subpath, Walking, Weigh, WeightThickness};
 use fairflight_media::Line;
 use fairflight_paths::transport::{EmitterSample, Light, Types};
 use fairflight_scene::{Geometry, Segment, Spectrum};
-use fairflight_sources::UniformSource;
+use fairflight_sources::{PathEnd, Row, UniformSource};
 use glam::DVec3;
 use std::fmt;
 
@@ -184,6 +184,7 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Bidirectional<'s, W, K> {
             if step.scattered == W::Spectrum::ZERO {
                 continue;
             }
+            source.row(Row::connection(PathEnd::Camera, t - 1));
             let strategy = Strategy { light: 1, eye: t };
             self.next_event(step, source, |found| each(&eye, Found { strategy, ..found }));
             for (behind, other) in light.steps.iter().enumerate() {
@@ -234,6 +235,7 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Bidirectional<'s, W, K> {
         }
         let bare = step.scattered * (scattered * seen.importance / self.weigh.light_paths);
         let segment = vertex.leave(seen.towards_camera, seen.distance);
+        source.row(Row::connection(PathEnd::Light, index as u32 + 1));
         let node = step.node;
         let (value, weight) = self.through(&segment, bare, |weigh| weigh.light_image(&node), source)?;
         let strategy = Strategy { light: index as u32 + 2, eye: 1 };

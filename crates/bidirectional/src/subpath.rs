@@ -5,7 +5,7 @@ use fairflight_media::Line;
 use fairflight_paths::Walk;
 use fairflight_paths::transport::{Carried, Met, Start, Types, WalkEnd};
 use fairflight_scene::{Segment, Spectrum};
-use fairflight_sources::UniformSource;
+use fairflight_sources::{PathEnd, Row, UniformSource};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
@@ -100,6 +100,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
     ) {
         subpath.clear();
         let world = &self.world;
+        source.row(Row::direction(PathEnd::Light, 0));
         let Some(start) = self.emitters.sample(world.lights, world.surfaces, source) else { return };
         subpath.start = Some(start);
         let end = self.end_of(&start);

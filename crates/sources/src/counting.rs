@@ -1,6 +1,6 @@
 //! A source that counts what is drawn from it.
 
-use crate::UniformSource;
+use crate::{Row, UniformSource};
 
 /// Counts the variates that a sampler draws, so that a test asserts cost and not only value.
 #[derive(Clone, Debug)]
@@ -26,6 +26,11 @@ impl<S: UniformSource> UniformSource for Counting<S> {
     fn next_uniform(&mut self) -> f64 {
         self.drawn += 1;
         self.inner.next_uniform()
+    }
+
+    #[inline]
+    fn row(&mut self, row: Row) {
+        self.inner.row(row);
     }
 }
 

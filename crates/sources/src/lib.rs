@@ -6,6 +6,7 @@
 //! * [`Seeded`]: xoshiro256++ (Blackman & Vigna 2021), one stream per batch.
 //! * [`Scripted`]: a fixed list that panics when it is exhausted: exact algebra and draw counts in tests.
 //! * [`Counting`]: how many variates a sampler draws.
+//! * [`Replayed`]: the variates of a path, changed a little: steps of Metropolis sampling. A path tells it by [`Row`]s what it draws for.
 //! * [`points`]: the points of [`Sobol`], [`Halton`], [`Hammersley`] and [`LatinHypercube`], randomised, each a source of its own.
 //!
 //! ```
@@ -22,13 +23,19 @@
 
 mod counting;
 pub mod points;
+mod replayed;
+mod row;
 mod scripted;
 mod seeded;
+mod small_step;
 
 pub use counting::Counting;
 pub use points::{Halton, Hammersley, LatinHypercube, PointSet, PointSetError, PointSource, Sobol};
+pub use replayed::{Layout, Replayed, Step, Variates};
+pub use row::{PathEnd, Purpose, Row};
 pub use scripted::Scripted;
 pub use seeded::{Seeded, derive_seed, named_seed};
+pub use small_step::{SmallStep, SmallStepError};
 
 /// The largest variate that a source returns: 1 − 2^-53.
 pub const LARGEST_VARIATE: f64 = 1.0 - f64::EPSILON / 2.0;
@@ -55,12 +62,23 @@ pub trait UniformSource {
     fn next_exponential(&mut self) -> f64 {
         -(1.0 - self.next_uniform()).ln()
     }
+
+    /// Turns to a row: what is drawn from here on belongs to it.
+    ///
+    /// Changes no law, and costs nothing: only a source that replays a path listens ([`Replayed`]).
+    #[inline]
+    fn row(&mut self, _row: Row) {}
 }
 
 impl<S: UniformSource + ?Sized> UniformSource for &mut S {
     #[inline]
     fn next_uniform(&mut self) -> f64 {
         (**self).next_uniform()
+    }
+
+    #[inline]
+    fn row(&mut self, row: Row) {
+        (**self).row(row);
     }
 }
 

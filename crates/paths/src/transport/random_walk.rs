@@ -4,7 +4,7 @@ use super::{Event, Passage, Types, Vertex, World};
 use crate::Walk;
 use fairflight_media::Line;
 use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
-use fairflight_sources::UniformSource;
+use fairflight_sources::{PathEnd, Row, UniformSource};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
@@ -74,15 +74,22 @@ impl<W: Types> World<'_, W> {
         mut met: impl FnMut(Met<'_, W::Spectrum>, DVec3, W::Spectrum, &mut S) -> ControlFlow<()>,
     ) -> WalkEnd<W::Spectrum> {
         let collisions = self.collisions(walk);
-        for _ in 0..max_vertices {
+        let end = match kind {
+            Carried::Radiance => PathEnd::Camera,
+            Carried::Power => PathEnd::Light,
+        };
+        for before in 0..max_vertices {
+            let number = before.saturating_add(1);
             let hit = self.surfaces.intersect(&segment);
             segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
             let incident = segment.line.direction;
+            source.row(Row::flight(end, number));
             let (vertex, factor, hit) = match self.follow(walk, &collisions, &segment, source) {
                 Event::Scattered { vertex, energy } => (vertex, energy, None),
                 Event::Passed { weight } => {
                     carried = carried * weight;
                     let Some(hit) = hit else { return WalkEnd::Escaped(incident, carried) };
+                    source.row(Row::direction(end, number));
                     if let Some(passage) = self.pass(&hit, incident, source) {
                         if met(Met::Smooth { hit, passage }, incident, carried, source).is_break() {
                             return WalkEnd::Ended;
@@ -104,6 +111,7 @@ impl<W: Types> World<'_, W> {
             if met(Met::Vertex { vertex, factor, hit }, incident, carried, source).is_break() {
                 return WalkEnd::Ended;
             }
+            source.row(Row::direction(end, number));
             let survival = factor.magnitude().min(1.0);
             if survival == 0.0 || source.next_uniform() >= survival {
                 return WalkEnd::Ended;

@@ -5,7 +5,7 @@ use crate::Walk;
 use crate::extend::{Extension, LightCandidates, PathSampling};
 use fairflight_media::Line;
 use fairflight_scene::{Geometry, Segment, Spectrum};
-use fairflight_sources::UniformSource;
+use fairflight_sources::{PathEnd, Row, UniformSource};
 
 /// A path's radiance, and whether it was cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +32,11 @@ impl<W: Types> World<'_, W> {
         let heuristic = sampling.heuristic;
         let mut radiance = W::Spectrum::ZERO;
         let mut throughput = W::Spectrum::splat(1.0);
-        for _ in 0..max_vertices {
+        for before in 0..max_vertices {
+            let number = before.saturating_add(1);
             let hit = self.surfaces.intersect(&segment);
             segment.length = hit.map_or(f64::INFINITY, |hit| hit.distance);
+            source.row(Row::flight(PathEnd::Camera, number));
             let (vertex, factor) = match self.follow(walk, &collisions, &segment, source) {
                 Event::Scattered { vertex, energy } => (vertex, energy),
                 Event::Passed { weight } => {
@@ -46,6 +48,7 @@ impl<W: Types> World<'_, W> {
                     };
                     radiance +=
                         throughput * self.emission(heuristic, from.as_ref(), segment.line.direction, &hit);
+                    source.row(Row::direction(PathEnd::Camera, number));
                     if let Some(passage) = self.pass(&hit, segment.line.direction, source) {
                         throughput = throughput * passage.radiance_scale;
                         let line = Line { origin: hit.position, direction: passage.direction };
@@ -60,8 +63,10 @@ impl<W: Types> World<'_, W> {
             };
             let factor: W::Spectrum = factor;
             sampling.extension.prepare(self, &vertex);
+            source.row(Row::connection(PathEnd::Camera, number));
             let lit = self.emitters_by(sampling, &vertex, shadow, source);
             radiance += throughput * factor * lit;
+            source.row(Row::direction(PathEnd::Camera, number));
             let survival = factor.magnitude().min(1.0);
             if source.next_uniform() >= survival {
                 return Traced { radiance, is_cut: false };

@@ -1,0 +1,136 @@
+//! Small steps of one variate (kelemen-2002).
+
+use crate::LARGEST_VARIATE;
+
+/// A small step on the circle [0, 1): as often forwards as backwards, by a distance whose logarithm is uniform between those of the
+/// least and the largest one.
+///
+/// ```text
+/// v = u ± s_2 exp(−U ln(s_2/s_1)) mod 1
+/// ```
+///
+/// **Law.** v is as probable from u as u from v, exactly: steps are whole numbers on the lattice k · 2^-53, added modulo 2^53, so that v is on
+/// the lattice, too. A uniform u makes a uniform v.
+///
+/// ```
+/// use fairflight_sources::SmallStep;
+///
+/// let step = SmallStep::default();
+/// // Forwards by the largest step, and over the end of the circle.
+/// assert_eq!(step.from(0.25, 0.0), 0.3125);
+/// assert_eq!(step.from(0.96875, 0.0), 0.03125);
+/// // Backwards by the same.
+/// assert_eq!(step.from(0.3125, 0.5), 0.25);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmallStep {
+    largest: f64,
+    log2_ratio: f64,
+}
+
+/// Error of sizes that are none of small steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SmallStepError {
+    /// Steps must satisfy 0 < least ≤ largest ≤ 1/2: half of the circle is as far as it goes.
+    NotOrdered {
+        /// The least step given.
+        least: f64,
+        /// The largest step given.
+        largest: f64,
+    },
+}
+
+impl std::fmt::Display for SmallStepError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self::NotOrdered { least, largest } = self;
+        write!(f, "steps must satisfy 0 < least <= largest <= 1/2, found {least} and {largest}")
+    }
+}
+
+impl std::error::Error for SmallStepError {}
+
+/// 2^53: points of the lattice.
+const POINTS: u64 = 1 << 53;
+
+impl SmallStep {
+    /// Steps between `least` and `largest` \[1\].
+    ///
+    /// # Errors
+    /// If they are not ordered: 0 < least ≤ largest ≤ 1/2.
+    pub fn new(least: f64, largest: f64) -> Result<Self, SmallStepError> {
+        if 0.0 < least && least <= largest && largest <= 0.5 {
+            Ok(Self { largest, log2_ratio: (largest / least).log2() })
+        } else {
+            Err(SmallStepError::NotOrdered { least, largest })
+        }
+    }
+
+    /// The largest step \[1\].
+    #[must_use]
+    pub fn largest(self) -> f64 {
+        self.largest
+    }
+
+    /// The step from the variate `u`, chosen by the variate `chance`: forwards in its first half.
+    #[inline]
+    #[must_use]
+    pub fn from(self, u: f64, chance: f64) -> f64 {
+        let is_forwards = chance < 0.5;
+        let share = if is_forwards { 2.0 * chance } else { 2.0 * chance - 1.0 };
+        let distance = self.largest * (-share * self.log2_ratio).exp2();
+        let at = (u * POINTS as f64) as u64;
+        let by = (distance * POINTS as f64) as u64;
+        let to = if is_forwards { at + by } else { at + POINTS - by };
+        (to & (POINTS - 1)) as f64 * (1.0 / POINTS as f64)
+    }
+}
+
+/// Between 1/1024 and 1/16, as Kelemen has them.
+impl Default for SmallStep {
+    fn default() -> Self {
+        Self { largest: 1.0 / 16.0, log2_ratio: 6.0 }
+    }
+}
+
+const _: () = assert!(LARGEST_VARIATE * POINTS as f64 == (POINTS - 1) as f64);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Seeded, UniformSource};
+
+    #[test]
+    fn steps_stay_on_the_lattice_and_lead_back() {
+        let step = SmallStep::default();
+        let mut source = Seeded::new(3);
+        for _ in 0..10_000 {
+            // Few digits, so that half of the circle more is exact.
+            let (u, chance) = (source.next_uniform(), (1024.0 * source.next_uniform()).floor() / 2048.0);
+            let v = step.from(u, chance);
+            assert!((0.0..1.0).contains(&v) && (v * POINTS as f64).fract() == 0.0);
+            let distance = (v - u).rem_euclid(1.0);
+            assert!((1.0 / 1025.0..=1.0 / 16.0).contains(&distance), "{distance}");
+            // The same distance backwards, to the last bit.
+            assert_eq!(step.from(v, chance + 0.5), u);
+        }
+        for end in [0.0, LARGEST_VARIATE] {
+            for chance in [0.0, 0.25, 0.5, LARGEST_VARIATE] {
+                assert!((0.0..1.0).contains(&step.from(end, chance)));
+            }
+        }
+    }
+
+    #[test]
+    fn the_sizes_are_those_of_kelemen() {
+        let step = SmallStep::new(1.0 / 1024.0, 1.0 / 16.0).unwrap();
+        assert_eq!(step, SmallStep::default());
+        assert_eq!(step.largest(), 1.0 / 16.0);
+        // Half of the way between the logarithms.
+        assert!((step.from(0.5, 0.25) - 0.5 - 1.0 / 128.0).abs() < 1e-15);
+        assert!((step.from(0.5, LARGEST_VARIATE) - 0.5 + 1.0 / 1024.0).abs() < 1e-15);
+        for (least, largest) in [(0.0, 0.1), (0.2, 0.1), (0.1, 0.6), (f64::NAN, 0.1)] {
+            let error = SmallStep::new(least, largest).unwrap_err();
+            assert!(error.to_string().contains("0 < least <= largest <= 1/2"));
+        }
+    }
+}
