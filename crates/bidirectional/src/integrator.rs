@@ -8,6 +8,8 @@ use fairflight_sources::{PathEnd, Row, UniformSource};
 use glam::DVec3;
 use std::fmt;
 
+mod alone;
+
 /// Bidirectional path tracing among surfaces and in media (lafortune-1996, antwerpen-2011 chapters 4 and 5).
 ///
 /// ```text

@@ -2,8 +2,8 @@
 
 use crate::{LightEnd, Node, Weigh, WeightThickness};
 use fairflight_media::Line;
-use fairflight_paths::Walk;
 use fairflight_paths::transport::{Carried, Met, Start, Types, WalkEnd};
+use fairflight_paths::{Roulette, Walk};
 use fairflight_scene::{Segment, Spectrum};
 use fairflight_sources::{PathEnd, Row, UniformSource};
 use glam::DVec3;
@@ -86,14 +86,37 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         subpath: &mut Subpath<W::Spectrum>,
         source: &mut impl UniformSource,
     ) {
+        self.exactly_from_eye(u32::MAX, walking, line, subpath, source);
+    }
+
+    /// The same, ending at vertex `last` behind the pinhole.
+    pub(crate) fn exactly_from_eye(
+        &self,
+        last: u32,
+        walking: &Walking<W::Sampling>,
+        line: &Line,
+        subpath: &mut Subpath<W::Spectrum>,
+        source: &mut impl UniformSource,
+    ) {
         subpath.clear();
         let segment = Segment { line: *line, length: f64::INFINITY, from: None, to: None };
-        self.extend(walking, subpath, None, (segment, W::Spectrum::splat(1.0)), source);
+        self.extend((walking, last), subpath, None, (segment, W::Spectrum::splat(1.0)), source);
     }
 
     /// Fills `subpath` with a walk from a light, which carries all power.
     pub fn walk_from_light(
         &self,
+        walking: &Walking<W::Sampling>,
+        subpath: &mut Subpath<W::Spectrum>,
+        source: &mut impl UniformSource,
+    ) {
+        self.exactly_from_light(u32::MAX, walking, subpath, source);
+    }
+
+    /// The same, ending at vertex `last` behind the light.
+    pub(crate) fn exactly_from_light(
+        &self,
+        last: u32,
         walking: &Walking<W::Sampling>,
         subpath: &mut Subpath<W::Spectrum>,
         source: &mut impl UniformSource,
@@ -104,7 +127,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         let Some(start) = self.emitters.sample(world.lights, world.surfaces, source) else { return };
         subpath.start = Some(start);
         let end = self.end_of(&start);
-        self.extend(walking, subpath, Some(&end), (start.segment, start.power), source);
+        self.extend((walking, last), subpath, Some(&end), (start.segment, start.power), source);
     }
 
     /// The light end of a light subpath.
@@ -118,7 +141,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
     #[inline(never)]
     fn extend(
         &self,
-        walking: &Walking<W::Sampling>,
+        (walking, last): (&Walking<W::Sampling>, u32),
         subpath: &mut Subpath<W::Spectrum>,
         light: Option<&LightEnd<'_>>,
         start: (Segment, W::Spectrum),
@@ -133,7 +156,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         };
         let limits = (&walking.walk, walking.max_vertices);
         let end = self.world.random_walk(limits, start, kind, source, |met, _, arriving, _| {
-            let (place, scattered) = match met {
+            let (mut place, scattered) = match met {
                 Met::Smooth { hit, passage } => {
                     if !is_followed(&subpath.steps) {
                         subpath.unseen = Some(arriving);
@@ -147,18 +170,25 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
                     (self.place_in_medium(vertex.position), arriving * factor)
                 }
             };
-            let last = subpath.steps.last().map(|step| &step.node);
+            if walking.walk.roulette() == Roulette::Never {
+                place.survival = 1.0;
+            }
+            let previous = subpath.steps.last().map(|step| &step.node);
             // A step of no length has no direction: where rounding makes one, a set of measure zero, the walk ends.
-            if last.map(|node| node.place.position).or(first) == Some(place.position) {
+            if previous.map(|node| node.place.position).or(first) == Some(place.position) {
                 return ControlFlow::Break(());
             }
-            let node = match (last, light) {
+            let node = match (previous, light) {
                 (Some(previous), _) => self.next(previous, place),
                 (None, Some(end)) => self.first_of_light(end, place),
                 (None, None) => self.first_of_eye(place),
             };
             subpath.steps.push(Step { node, arriving, scattered });
-            ControlFlow::Continue(())
+            if subpath.steps.len() as u32 == last {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         });
         match end {
             WalkEnd::Escaped(direction, carried) => subpath.escape = Some((direction, carried)),

@@ -26,7 +26,7 @@ impl<C, F: FnMut(&mut Splats<C>, &mut dyn UniformSource)> Integrand<C> for F {
 }
 
 /// Draws a pixel, each as probable, and a point of it.
-fn film_position(camera: &Camera, source: &mut dyn UniformSource) -> ([u32; 2], [f64; 2]) {
+pub(crate) fn film_position(camera: &Camera, source: &mut dyn UniformSource) -> ([u32; 2], [f64; 2]) {
     let at = camera.resolution().map(|count| {
         let x = source.next_uniform() * f64::from(count);
         (x as u32, x.fract())
@@ -34,7 +34,8 @@ fn film_position(camera: &Camera, source: &mut dyn UniformSource) -> ([u32; 2], 
     (at.map(|(pixel, _)| pixel), at.map(|(_, within)| within))
 }
 
-fn pixels(camera: &Camera) -> f64 {
+/// Number of pixels.
+pub(crate) fn pixels(camera: &Camera) -> f64 {
     camera.resolution().map(f64::from).iter().product()
 }
 
@@ -83,7 +84,7 @@ impl<W: Types, K> std::fmt::Debug for FromBothEnds<'_, W, K> {
     }
 }
 
-impl<'s, W: Types, K> FromBothEnds<'s, W, K> {
+impl<'s, W: Types, K: WeightThickness<W::Medium>> FromBothEnds<'s, W, K> {
     /// Samples of `integrator`.
     pub fn new(integrator: Bidirectional<'s, W, K>) -> Self {
         Self { integrator, light: Subpath::empty(), first_order: 1 }
@@ -94,6 +95,33 @@ impl<'s, W: Types, K> FromBothEnds<'s, W, K> {
     #[must_use]
     pub fn with_first_order(self, first_order: u32) -> Self {
         Self { first_order, ..self }
+    }
+
+    /// Mean light of the paths of 1, 2, … edges, by its magnitude, of so many samples: what [`Lengths`](crate::Lengths) are chosen by.
+    pub fn light_by_length(&mut self, samples: u32, mut source: &mut dyn UniformSource) -> Vec<f64> {
+        let Self { integrator, light, .. } = self;
+        let (camera, light_paths) = (integrator.weigh().camera, integrator.weigh().light_paths);
+        let mut found = Vec::new();
+        let mut add = |edges: u32, value: f64| {
+            let index = edges as usize - 1;
+            if index >= found.len() {
+                found.resize(index + 1, 0.0);
+            }
+            found[index] += value / f64::from(samples);
+        };
+        for _ in 0..samples {
+            let (pixel, within) = film_position(camera, source);
+            integrator.trace_light(light, &mut source);
+            integrator.strategies(&camera.ray(pixel, within), light, &mut source, |_, one| {
+                add(one.strategy.light + one.strategy.eye - 1, one.value.magnitude() * pixels(camera));
+            });
+            for index in 0..if light_paths > 0.0 { light.steps.len() } else { 0 } {
+                if let Some((_, one)) = integrator.splat(light, index, &mut source) {
+                    add(one.strategy.light, one.value.magnitude() * light_paths);
+                }
+            }
+        }
+        found
     }
 
     /// The integrator.

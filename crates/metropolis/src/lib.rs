@@ -8,6 +8,10 @@
 //! | [`Plan`], [`Replica`] | | independent estimates of an image: errors come from them alone |
 //! | [`Primary`] | kelemen-2002, antwerpen-2011 6.6 | states are variates, over any integrator |
 //! | [`Integrand`], [`FromCamera`], [`FromBothEnds`] | | path tracing and bidirectional path tracing as functions of variates |
+//! | [`Multiplexed`], [`Lengths`] | hachisuka-2014 | one strategy per sample |
+//! | [`Redistribution`] | cline-2005, antwerpen-2011 6.8 | chains from every sample that finds light |
+//! | [`Importance`] | hoberock-2010, antwerpen-2011 6.7 | more of a chain where the image is noisy |
+//! | [`Kernels`] | lai-2007, antwerpen-2011 6.9 | sizes of steps, learnt from other replicas |
 //! | [`Mutation`] | antwerpen-2011 6.3 | steps in path space |
 //! | [`laws`] | | one step judged by independent states |
 //!
@@ -38,19 +42,29 @@
 //! ```
 
 mod chain;
+mod importance;
 mod integrand;
 pub mod laws;
+mod lengths;
+mod multiplexed;
 mod mutation;
+mod population;
 mod primary;
+mod redistribution;
 mod replica;
 mod splats;
 mod start;
 mod target;
 
 pub use chain::{Chain, NotFinite};
+pub use importance::{Importance, ImportanceError};
 pub use integrand::{FromBothEnds, FromCamera, Integrand};
+pub use lengths::{Lengths, LengthsError};
+pub use multiplexed::Multiplexed;
 pub use mutation::{Mutation, acceptance};
+pub use population::{Experience, Kernels, KernelsError};
 pub use primary::{NotAProbability, Primary};
+pub use redistribution::{Redistributed, Redistribution, RedistributionError};
 pub use replica::{Phase, Plan, PlanError, Refused, Replica};
 pub use splats::Splats;
 pub use start::Bootstrap;

@@ -1,6 +1,6 @@
 //! Metropolis sampling in primary sample space, over any integrator.
 
-use crate::{Film, Integrand, Proposed, Splats, Target, Which};
+use crate::{Experience, Film, Importance, Integrand, Kernels, Proposed, Splats, Target, Which};
 use fairflight_scene::Spectrum;
 use fairflight_sources::{Layout, SmallStep, Step, UniformSource, Variates};
 
@@ -20,9 +20,16 @@ pub struct Primary<'i, C> {
     integrand: &'i mut dyn Integrand<C>,
     variates: Variates,
     large_step: f64,
-    small_step: SmallStep,
+    steps: SmallSteps<'i>,
+    importance: Option<&'i Importance>,
     present: Weighted<C>,
     proposed: Weighted<C>,
+}
+
+/// Small steps of one size, or of several that the state chooses by.
+enum SmallSteps<'i> {
+    Alike(SmallStep),
+    Chosen(&'i Kernels, Experience),
 }
 
 /// Contributions and their f*.
@@ -45,18 +52,28 @@ pub struct NotAProbability(pub f64);
 
 impl<C> std::fmt::Debug for Primary<'_, C> {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { large_step, small_step, .. } = self;
+        let Self { large_step, variates, .. } = self;
         formatter
             .debug_struct("Primary")
             .field("large_step", large_step)
-            .field("small_step", small_step)
+            .field("variates", &variates.len())
             .finish_non_exhaustive()
     }
 }
 
 impl<'i, C: Spectrum> Primary<'i, C> {
-    const LARGE: usize = 0;
-    const SMALL: usize = 1;
+    /// Names of the kinds: the large step, and the small ones.
+    const KINDS: [&'static str; 1 + Kernels::MOST] = [
+        "large_step",
+        "small_step",
+        "small_step_2",
+        "small_step_3",
+        "small_step_4",
+        "small_step_5",
+        "small_step_6",
+        "small_step_7",
+        "small_step_8",
+    ];
 
     /// Variates of `integrand` by rows, with large steps of the probability 0.3 and small ones as Kelemen has them.
     pub fn new(integrand: &'i mut dyn Integrand<C>) -> Self {
@@ -64,7 +81,8 @@ impl<'i, C: Spectrum> Primary<'i, C> {
             integrand,
             variates: Variates::new(Layout::Rows),
             large_step: 0.3,
-            small_step: SmallStep::default(),
+            steps: SmallSteps::Alike(SmallStep::default()),
+            importance: None,
             present: Weighted::default(),
             proposed: Weighted::default(),
         }
@@ -85,7 +103,29 @@ impl<'i, C: Spectrum> Primary<'i, C> {
     /// The same with other small steps.
     #[must_use]
     pub fn with_small_step(self, small_step: SmallStep) -> Self {
-        Self { small_step, ..self }
+        Self { steps: SmallSteps::Alike(small_step), ..self }
+    }
+
+    /// The same with small steps of several sizes, chosen by the pixel that a state is brightest in.
+    #[must_use]
+    pub fn with_kernels(self, kernels: &'i Kernels) -> Self {
+        Self { steps: SmallSteps::Chosen(kernels, kernels.experience()), ..self }
+    }
+
+    /// What the chains saw of the sizes of steps, which is forgotten here; `None` where there is but one.
+    pub fn take_experience(&mut self) -> Option<Experience> {
+        match &mut self.steps {
+            SmallSteps::Alike(_) => None,
+            SmallSteps::Chosen(kernels, experience) => {
+                Some(std::mem::replace(experience, kernels.experience()))
+            }
+        }
+    }
+
+    /// The same with a target of brightness · importance of the pixel.
+    #[must_use]
+    pub fn with_importance(self, importance: &'i Importance) -> Self {
+        Self { importance: Some(importance), ..self }
     }
 
     /// The same with variates in another order.
@@ -121,10 +161,13 @@ impl<'i, C: Spectrum> Primary<'i, C> {
 
     /// Draws a proposal by a step of this kind.
     pub fn sample(&mut self, step: Step, source: &mut dyn UniformSource) {
-        let Self { integrand, variates, proposed: Weighted { splats, target }, .. } = self;
+        let Self { integrand, variates, importance, proposed: Weighted { splats, target }, .. } = self;
         splats.clear();
         integrand.sample(splats, &mut variates.step(step, source));
-        *target = splats.magnitude(|_| 1.0);
+        *target = match importance {
+            None => splats.magnitude(|_| 1.0),
+            Some(importance) => splats.magnitude(|pixel| importance.of(pixel)),
+        };
     }
 }
 
@@ -135,14 +178,35 @@ impl<C: Spectrum> Target<C> for Primary<'_, C> {
     }
 
     fn propose(&mut self, source: &mut dyn UniformSource) -> Proposed {
-        let (kind, step) = if source.next_uniform() < self.large_step {
-            (Self::LARGE, Step::Large)
-        } else {
-            (Self::SMALL, Step::Small(self.small_step))
+        let is_large = source.next_uniform() < self.large_step;
+        let pixel = match &self.steps {
+            SmallSteps::Alike(_) => [0, 0],
+            SmallSteps::Chosen(..) => self.present.splats.brightest().unwrap_or([0, 0]),
+        };
+        let (kind, step) = match &self.steps {
+            _ if is_large => (0, Step::Large),
+            SmallSteps::Alike(step) => (1, Step::Small(*step)),
+            SmallSteps::Chosen(kernels, _) => {
+                let chosen = kernels.choose(pixel, source);
+                (1 + chosen, Step::Small(kernels.sizes()[chosen]))
+            }
         };
         self.sample(step, source);
         let (to, from) = (self.proposed.target, self.present.target);
-        let acceptance = if to.is_finite() { (to / from).min(1.0) } else { f64::NAN };
+        if !to.is_finite() {
+            return Proposed { kind, acceptance: f64::NAN };
+        }
+        let choice = match (&self.steps, self.proposed.splats.brightest()) {
+            // α_Y(k)/α_X(k): the step back must be of the same size.
+            (SmallSteps::Chosen(kernels, _), Some(other)) if !is_large => {
+                kernels.shares(other)[kind - 1] / kernels.shares(pixel)[kind - 1]
+            }
+            _ => 1.0,
+        };
+        let acceptance = (to / from * choice).min(1.0);
+        if let (SmallSteps::Chosen(kernels, experience), false) = (&mut self.steps, is_large) {
+            kernels.count(experience, (pixel, kind - 1), acceptance);
+        }
         Proposed { kind, acceptance }
     }
 
@@ -159,6 +223,10 @@ impl<C: Spectrum> Target<C> for Primary<'_, C> {
     }
 
     fn kinds(&self) -> &[&'static str] {
-        &["large_step", "small_step"]
+        let sizes = match &self.steps {
+            SmallSteps::Alike(_) => 1,
+            SmallSteps::Chosen(kernels, _) => kernels.sizes().len(),
+        };
+        &Self::KINDS[..1 + sizes]
     }
 }

@@ -41,6 +41,14 @@ impl<C: Spectrum> Splats<C> {
         self.list.iter().map(|&(pixel, value)| value.magnitude() * importance(pixel)).sum()
     }
 
+    /// The pixel of the greatest contribution; `None` without any.
+    #[must_use]
+    pub fn brightest(&self) -> Option<[u32; 2]> {
+        let brighter =
+            |a: &([u32; 2], C), b: &([u32; 2], C)| if b.1.magnitude() > a.1.magnitude() { *b } else { *a };
+        self.list.iter().copied().reduce(|a, b| brighter(&a, &b)).map(|(pixel, _)| pixel)
+    }
+
     /// Adds all, times `scale`, to a film.
     pub fn deposit(&self, scale: f64, film: &mut Film<'_, C>) {
         for &(pixel, value) in &self.list {

@@ -3,11 +3,12 @@
 #[path = "../../bidirectional/tests/common/mod.rs"]
 mod common;
 
-use common::{Made, Scene, bulb, glass, mixed};
+use common::{Made, Scene, bulb, glass, mixed, sky};
 use fairflight_bidirectional::{Bidirectional, Exact, Midpoint, Walking, WeightThickness};
-use fairflight_media::Medium;
+use fairflight_media::{LineThickness, Medium};
 use fairflight_metropolis::{
-    Acceptance, Bootstrap, Chain, FromBothEnds, FromCamera, Integrand, Plan, Primary, Splats,
+    Acceptance, Bootstrap, Chain, FromBothEnds, FromCamera, Integrand, Lengths, Multiplexed, Plan, Primary,
+    Splats,
 };
 use fairflight_paths::{Heuristic, PathTracer, Ratio, RayTransmittance, Uniform};
 use fairflight_sources::{Layout, Seeded, derive_seed};
@@ -27,14 +28,14 @@ fn tracer<M: Medium, T: RayTransmittance<M>>(scene: &Scene<M>, shadow: T) -> Pat
     PathTracer::new(scene.world(), scene.walk, shadow, Heuristic::Balance)
 }
 
-/// Replicas less path tracing, of which the means agree, with the mean of the latter added: a sample holds a replica, and as many paths as that has
-/// evaluations.
-fn agrees<M: Medium, T: RayTransmittance<M>>(
+/// Replicas less path tracing, of which the means agree, with the mean of the latter added, and that mean, for both quantities of [`seen`]. A sample
+/// holds a replica, and half as many paths as that has evaluations.
+fn differences<M: Medium, T: RayTransmittance<M>>(
     name: &str,
     (scene, shadow): (&Scene<M>, T),
     (plan, replicas): (Plan, u64),
     target: &mut Primary<'_, f64>,
-) {
+) -> [(Moments, f64); 2] {
     let mut paths = FromCamera::new(&scene.camera, tracer(scene, shadow));
     let mut splats = Splats::default();
     let mut traced = |source: &mut Seeded, samples: u64| {
@@ -48,7 +49,7 @@ fn agrees<M: Medium, T: RayTransmittance<M>>(
         }
         sums
     };
-    let evaluations = plan.evaluations();
+    let evaluations = plan.evaluations() / 2;
     let scale = traced(&mut Seeded::new(derive_seed(SEED, 1)), evaluations * replicas / 4);
     let mut other = Seeded::new(derive_seed(SEED, 2));
     let mut moments = [Moments::new(); 2];
@@ -67,8 +68,17 @@ fn agrees<M: Medium, T: RayTransmittance<M>>(
         }
     }
     println!("{name}: acceptance {:?}", kinds.map(|kind| kind.mean()));
-    for (moments, scale) in moments.iter().zip(scale) {
-        let verdict = judge(moments, &Reference::exact(scale).with_mild_tails(), 1e-4);
+    std::array::from_fn(|i| (moments[i], scale[i]))
+}
+
+fn agrees<M: Medium, T: RayTransmittance<M>>(
+    name: &str,
+    scene: (&Scene<M>, T),
+    replicas: u64,
+    target: &mut Primary<'_, f64>,
+) {
+    for (moments, scale) in differences(name, scene, (short(), replicas), target) {
+        let verdict = judge(&moments, &Reference::exact(scale).with_mild_tails(), 1e-4);
         println!("  z {:+.1}, {:?}", verdict.mean_z.unwrap_or(0.0), verdict.detectable_relative_bias);
         assert_eq!(verdict.sound, Some(true), "{name}: {}", verdict.reason);
     }
@@ -88,7 +98,7 @@ fn over_both_ends<M: Medium, T: RayTransmittance<M> + Clone, K: WeightThickness<
     let weigh = scene.weigh(&emitters, Heuristic::Balance, thickness);
     let integrator = Bidirectional::new(weigh, Walking::new(scene.walk), shadow.clone());
     let mut integrand = FromBothEnds::new(integrator);
-    agrees(name, (scene, shadow), (short(), replicas), &mut Primary::new(&mut integrand));
+    agrees(name, (scene, shadow), replicas, &mut Primary::new(&mut integrand));
     assert_eq!(integrand.integrator().truncated(), 0);
 }
 
@@ -116,8 +126,40 @@ fn over_paths_by_rows_and_flat() {
     for layout in [Layout::Rows, Layout::Flat] {
         let mut integrand = FromCamera::new(&scene.camera, tracer(&scene, Regular));
         let mut target = Primary::new(&mut integrand).with_layout(layout);
-        agrees("paths", (&scene, Regular), (short(), 3000), &mut target);
+        agrees("paths", (&scene, Regular), 3000, &mut target);
     }
+}
+
+/// Replicas by one strategy per sample.
+fn multiplexed<M: LineThickness>(name: &str, scene: &Scene<M>) {
+    let emitters = scene.emitters::<Regular>();
+    let integrator = || {
+        let weigh = scene.weigh::<Regular, _>(&emitters, Heuristic::Balance, Exact);
+        Bidirectional::new(weigh, Walking::new(scene.walk), Regular)
+    };
+    let light = FromBothEnds::new(integrator()).light_by_length(1000, &mut Seeded::new(9));
+    let lengths = Lengths::new(1, &light, (0.2, 0.7)).unwrap();
+    let mut integrand = Multiplexed::new(integrator(), lengths);
+    let plan = Plan::new(100, 1, 30).unwrap();
+    let found = differences(name, (scene, Regular), (plan, 8000), &mut Primary::new(&mut integrand));
+    // Long paths of a rare strategy are worth hundreds of others: the judge would ask for a hundred times as many samples. Five standard errors, of at
+    // most a hundredth.
+    for (moments, scale) in found {
+        let (error, deviation) = (moments.standard_error().unwrap(), moments.mean().unwrap() - scale);
+        println!("  z {:+.1}, error {:.4}", deviation / error, error / scale);
+        assert!(
+            deviation.abs() < 5.0 * error && error < 0.01 * scale,
+            "{name}: {deviation} of {scale}, {error}"
+        );
+    }
+    assert_eq!(integrand.integrator().truncated(), 0);
+}
+
+#[test]
+fn by_one_strategy_per_sample() {
+    multiplexed("sky, one strategy", &sky().in_pixels([2, 2]));
+    let sky = Scene { light_paths_per_pixel: 0.0, ..sky() };
+    multiplexed("sky, one strategy, no light image", &sky.in_pixels([2, 2]));
 }
 
 #[test]

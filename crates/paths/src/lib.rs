@@ -61,4 +61,4 @@ pub use photon_tracer::PhotonTracer;
 pub use sampling::{NotPositive, SamplingExtinction, Uniform};
 pub use shadow::{Ratio, RayTransmittance, arriving};
 pub use splitting::LineSplitting;
-pub use walk::{End, ROULETTE_BELOW, ScatteringEvent, Walk};
+pub use walk::{End, ROULETTE_BELOW, Roulette, ScatteringEvent, Walk};

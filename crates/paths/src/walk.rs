@@ -31,6 +31,17 @@ pub struct Walk<R> {
     version: Version,
     sampling: R,
     max_collisions: u64,
+    roulette: Roulette,
+}
+
+/// Chance of a path to go on from a vertex ([`World::random_walk`](crate::transport::World::random_walk)).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Roulette {
+    /// The share that is scattered there: what goes on has the weight of one that was scattered whole.
+    #[default]
+    Scattered,
+    /// Certainty: what goes on weighs as much as was scattered. For walks whose number of vertices is chosen before.
+    Never,
 }
 
 /// The energy, relative to where the particle started, below which roulette is played.
@@ -87,13 +98,24 @@ pub(crate) enum Leg {
 impl<R: SamplingExtinction> Walk<R> {
     /// Walks with the collisions of `version`, at the rate of `sampling`.
     pub fn new(version: Version, sampling: R) -> Self {
-        Self { version, sampling, max_collisions: u64::MAX }
+        Self { version, sampling, max_collisions: u64::MAX, roulette: Roulette::Scattered }
     }
 
     /// The same, but no more than `max_collisions` collisions each: a bias where it happens.
     #[must_use]
     pub fn with_max_collisions(self, max_collisions: u64) -> Self {
         Self { max_collisions, ..self }
+    }
+
+    /// The same with another chance to go on from a vertex.
+    #[must_use]
+    pub fn with_roulette(self, roulette: Roulette) -> Self {
+        Self { roulette, ..self }
+    }
+
+    /// Chance to go on from a vertex.
+    pub fn roulette(&self) -> Roulette {
+        self.roulette
     }
 
     /// The sampling extinction.

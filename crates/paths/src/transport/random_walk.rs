@@ -1,7 +1,7 @@
 //! One random walk from vertex to vertex, from a camera or from a light.
 
 use super::{Event, Passage, Types, Vertex, World};
-use crate::Walk;
+use crate::{Roulette, Walk};
 use fairflight_media::Line;
 use fairflight_scene::{Geometry, Hit, Segment, Spectrum};
 use fairflight_sources::{PathEnd, Row, UniformSource};
@@ -57,7 +57,7 @@ impl<W: Types> World<'_, W> {
     ///     fly to a collision or a surface                      (raab-2008 algorithm 1, or any other sampling extinction)
     ///     show `met` where that is, and what arrives there; end if it says so
     ///     at a smooth surface: go on behind it
-    ///     else: roulette with the share that is scattered
+    ///     else: roulette with the share that is scattered, unless the walk never plays it
     ///     choose a direction by BRDF · cosine or phase function
     /// ```
     ///
@@ -112,10 +112,13 @@ impl<W: Types> World<'_, W> {
                 return WalkEnd::Ended;
             }
             source.row(Row::direction(end, number));
-            let survival = factor.magnitude().min(1.0);
-            if survival == 0.0 || source.next_uniform() >= survival {
-                return WalkEnd::Ended;
-            }
+            let scattered = factor.magnitude().min(1.0);
+            let survival = match walk.roulette() {
+                _ if scattered == 0.0 => return WalkEnd::Ended,
+                Roulette::Scattered if source.next_uniform() >= scattered => return WalkEnd::Ended,
+                Roulette::Scattered => scattered,
+                Roulette::Never => 1.0,
+            };
             carried = carried * factor * (1.0 / survival);
             let (u, v) = (source.next_uniform(), source.next_uniform());
             segment = vertex.leave(vertex.sample(&self.volume.phase, u, v), f64::INFINITY);

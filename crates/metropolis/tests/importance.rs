@@ -1,0 +1,95 @@
+//! Targets that follow noise: the image is what it was, and what changes must change together.
+
+mod toys;
+
+use fairflight_metropolis::{Acceptance, Bootstrap, Chain, Importance, Integrand, Plan, Primary, Splats};
+use fairflight_sources::{SmallStep, UniformSource, derive_seed};
+use fairflight_stats::Moments;
+use toys::{SEED, accepted, half, integrand, left, modes, rejected, score, stream, verdict};
+
+/// The left half is six times as important.
+fn importance() -> Importance {
+    Importance::new([2, 1], vec![6.0, 1.0]).unwrap()
+}
+
+fn primary(integrand: &mut dyn Integrand<f64>) -> Primary<'_, f64> {
+    Primary::new(integrand).with_small_step(SmallStep::new(0.002, 0.04).unwrap())
+}
+
+#[test]
+fn any_importance_has_the_same_image() {
+    let (mut integrand, importance) = (integrand, importance());
+    let mut target = primary(&mut integrand).with_importance(&importance);
+    let plan = Plan::new(16, 1, 20).unwrap();
+    accepted("importance", &verdict(40_000, SEED, |seed| score(&plan, &mut target, seed).0));
+}
+
+/// The score of one chain from a set of 16, unscaled, its b̂, and that of another set by brightness alone.
+fn twin(name: &str, scale: impl Fn(f64, f64, f64) -> f64) {
+    let (mut first, mut second, importance) = (integrand, integrand, importance());
+    let mut target = primary(&mut first).with_importance(&importance);
+    let mut plain = primary(&mut second);
+    let found = verdict(40_000, SEED, |seed| {
+        let set = Bootstrap::draw(&mut target, 16, derive_seed(seed, 0)).unwrap();
+        set.start(&mut target, set.choose(&mut stream(seed, 1)).unwrap());
+        let mut chain = Chain::new(&mut target, 1.0 / 20.0);
+        let (mut counts, mut source) = ([Acceptance::default(); 2], stream(seed, 2));
+        let score = left(|film| {
+            for _ in 0..20 {
+                chain.step(film, &mut counts, &mut source).unwrap();
+            }
+            chain.finish(film);
+        });
+        // The same variates, another target.
+        let bright = Bootstrap::draw(&mut plain, 16, derive_seed(seed, 0)).unwrap();
+        scale(score, set.brightness(), bright.brightness())
+    });
+    rejected(name, &found);
+}
+
+#[test]
+fn what_does_not_change_with_the_importance_is_found() {
+    // aware_no_importance: F is not divided by the importance of its pixel, six times too much of the left half. Expected |z| 300.
+    twin("aware_no_importance", |score, b, _| 6.0 * score * b);
+    // The brightness of the target without importance.
+    twin("aware_plain_brightness", |score, _, bright| score * bright);
+}
+
+#[test]
+fn stages_learn_where_the_noise_is() {
+    // The right pixel is noisy: replicas of a first stage say so, and a second one has less of it.
+    let mut integrand = |splats: &mut Splats<f64>, source: &mut dyn UniformSource| {
+        let [u, chance] = [(); 2].map(|()| source.next_uniform());
+        let noise = if half(u) == [0, 0] { 1.0 } else { f64::from(u8::from(chance < 0.04)) / 0.04 };
+        splats.push(half(u), modes(u) * noise);
+    };
+    let even = Importance::even([2, 1]).unwrap();
+    let plan = Plan::new(1000, 1, 300).unwrap();
+    let mut stage = |importance: &Importance, seed: u64| {
+        let mut target = primary(&mut integrand).with_importance(importance);
+        let mut moments = [Moments::new(); 2];
+        for index in 0..2000 {
+            let mut image = [0.0; 2];
+            plan.replica(&mut target, (index, seed), &mut |[column, _], value| {
+                image[column as usize] += value
+            })
+            .unwrap();
+            for (moments, value) in moments.iter_mut().zip(image) {
+                moments.push(value);
+            }
+        }
+        moments
+    };
+    let of = |moments: &[Moments; 2], what: fn(&Moments) -> Option<f64>| moments.map(|m| what(&m).unwrap());
+    let first = stage(&even, derive_seed(SEED, 1));
+    let learnt = even.learn(&of(&first, Moments::mean), &of(&first, Moments::sample_variance)).unwrap();
+    assert!(learnt.of([1, 0]) > 1.2 * learnt.of([0, 0]), "{learnt:?}");
+    let second = stage(&learnt, derive_seed(SEED, 2));
+    let relative = |moments: &Moments| moments.sample_variance().unwrap() / moments.mean().unwrap().powi(2);
+    assert!(relative(&second[1]) < relative(&first[1]), "{first:?} {second:?}");
+    let unbiased = |seed| {
+        let mut target = primary(&mut integrand).with_importance(&learnt);
+        score(&plan, &mut target, seed).0
+    };
+    accepted("second stage", &verdict(2000, derive_seed(SEED, 3), unbiased));
+}
