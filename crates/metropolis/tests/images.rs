@@ -143,12 +143,12 @@ fn multiplexed<M: LineThickness>(name: &str, scene: &Scene<M>) {
     let plan = Plan::new(100, 1, 30).unwrap();
     let found = differences(name, (scene, Regular), (plan, 8000), &mut Primary::new(&mut integrand));
     // Long paths of a rare strategy are worth hundreds of others: the judge would ask for a hundred times as many samples. Five standard errors, of at
-    // most a hundredth.
+    // most an eightieth.
     for (moments, scale) in found {
         let (error, deviation) = (moments.standard_error().unwrap(), moments.mean().unwrap() - scale);
         println!("  z {:+.1}, error {:.4}", deviation / error, error / scale);
         assert!(
-            deviation.abs() < 5.0 * error && error < 0.01 * scale,
+            deviation.abs() < 5.0 * error && error < scale / 80.0,
             "{name}: {deviation} of {scale}, {error}"
         );
     }

@@ -28,7 +28,11 @@ pub struct Variates {
     layout: Layout,
     state: Record,
     proposal: Record,
+    /// The variates of the state after a small step each: made all at once, since one by one a path would wait for each of them.
+    changed: Vec<f64>,
     open: Open,
+    /// The row to be opened when something is drawn.
+    next: Option<Row>,
 }
 
 /// Order in which variates belong to each other.
@@ -99,11 +103,13 @@ struct Open {
 }
 
 impl Record {
-    /// Room for a few hundred variates.
+    /// A few hundred variates.
+    const ROOM: usize = 512;
+
     fn new(generation: u64) -> Self {
-        const ROOM: usize = 512;
-        let slots = vec![Slot::default(); ROOM];
-        Self { generation, variates: Vec::with_capacity(ROOM), chunks: Vec::with_capacity(ROOM), slots }
+        let slots = vec![Slot::default(); Self::ROOM];
+        let (variates, chunks) = (Vec::with_capacity(Self::ROOM), Vec::with_capacity(Self::ROOM));
+        Self { generation, variates, chunks, slots }
     }
 
     fn clear(&mut self, generation: u64) {
@@ -121,14 +127,14 @@ impl Record {
         Cursor { at: start, end, next }
     }
 
-    /// The variate at a place, and the place behind it.
+    /// The index of the variate at a place, and the place behind it.
     #[inline]
-    fn read(&self, cursor: &mut Cursor) -> Option<f64> {
+    fn read(&self, cursor: &mut Cursor) -> Option<usize> {
         while cursor.at == cursor.end {
             *cursor = self.behind(cursor.next?);
         }
         cursor.at += 1;
-        Some(self.variates[cursor.at - 1])
+        Some(cursor.at - 1)
     }
 }
 
@@ -138,7 +144,8 @@ impl Variates {
     pub fn new(layout: Layout) -> Self {
         let open =
             Open { slot: Row::FIRST.index(), purpose: Row::FIRST.purpose, start: 0, read: Cursor::default() };
-        Self { layout, state: Record::new(1), proposal: Record::new(2), open }
+        let (state, proposal) = (Record::new(1), Record::new(2));
+        Self { layout, state, proposal, changed: Vec::with_capacity(Record::ROOM), open, next: None }
     }
 
     /// The source of a proposal, made from the state and, where it has to be fresh, from `source`. A proposal before that was not accepted is
@@ -150,8 +157,12 @@ impl Variates {
     ) -> Replayed<'v, S> {
         let generation = 1 + self.state.generation.max(self.proposal.generation);
         self.proposal.clear(generation);
-        self.open.start = 0;
+        (self.open.start, self.next) = (0, None);
         self.turn_to(Row::FIRST, step);
+        if let Step::Small(small) = step {
+            self.changed.clear();
+            self.changed.extend(self.state.variates.iter().map(|&u| small.from(u, source.next_uniform())));
+        }
         Replayed { variates: self, step, source }
     }
 
@@ -222,26 +233,27 @@ pub struct Replayed<'v, S: ?Sized> {
 
 impl<S: UniformSource + ?Sized> UniformSource for Replayed<'_, S> {
     fn next_uniform(&mut self) -> f64 {
-        let Self { variates: Variates { state, proposal, open, .. }, step, source } = self;
+        if let Some(row) = self.variates.next.take() {
+            self.variates.close();
+            self.variates.turn_to(row, self.step);
+        }
+        let Self { variates: Variates { state, proposal, changed, open, .. }, step, source } = self;
         let u = match (state.read(&mut open.read), *step) {
             (None, _) | (_, Step::Large) => source.next_uniform(),
-            (Some(u), Step::Again) => u,
-            (Some(u), Step::Small(small)) => match open.purpose {
-                Purpose::Kept => u,
+            (Some(index), Step::Again) => state.variates[index],
+            (Some(index), Step::Small(_)) => match open.purpose {
                 Purpose::Redrawn if source.next_uniform() < 0.1 => source.next_uniform(),
-                Purpose::Redrawn => u,
-                Purpose::Flight | Purpose::Direction | Purpose::Connection => {
-                    small.from(u, source.next_uniform())
-                }
+                Purpose::Kept | Purpose::Redrawn => state.variates[index],
+                Purpose::Flight | Purpose::Direction | Purpose::Connection => changed[index],
             },
         };
         proposal.variates.push(u);
         u
     }
 
+    #[inline]
     fn row(&mut self, row: Row) {
-        self.variates.close();
-        self.variates.turn_to(row, self.step);
+        self.variates.next = Some(row);
     }
 }
 

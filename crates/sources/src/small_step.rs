@@ -2,12 +2,15 @@
 
 use crate::LARGEST_VARIATE;
 
-/// A small step on the circle [0, 1): as often forwards as backwards, by a distance whose logarithm is uniform between those of the
-/// least and the largest one.
+/// A small step on the circle [0, 1): as often forwards as backwards, by a distance between the least and the largest one, s_1 and s_2, of
+/// which every octave is as probable.
 ///
 /// ```text
-/// v = u ± s_2 exp(−U ln(s_2/s_1)) mod 1
+/// v = u ± s_2 2^(−k) (1 − f/2) mod 1,      k + f = U log2(s_2/s_1), k whole
 /// ```
+///
+/// Within an octave the distance is uniform, where kelemen-2002 has its logarithm uniform, v = u ± s_2 exp(−U ln(s_2/s_1)): any symmetric step
+/// will do, and this one costs no exponential.
 ///
 /// **Law.** v is as probable from u as u from v, exactly: steps are whole numbers on the lattice k · 2^-53, added modulo 2^53, so that v is on
 /// the lattice, too. A uniform u makes a uniform v.
@@ -32,7 +35,7 @@ pub struct SmallStep {
 /// Error of sizes that are none of small steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SmallStepError {
-    /// Steps must satisfy 0 < least ≤ largest ≤ 1/2: half of the circle is as far as it goes.
+    /// Steps must satisfy 2^-53 ≤ least ≤ largest ≤ 1/2: no less than the lattice, and no more than half of the circle.
     NotOrdered {
         /// The least step given.
         least: f64,
@@ -44,22 +47,24 @@ pub enum SmallStepError {
 impl std::fmt::Display for SmallStepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self::NotOrdered { least, largest } = self;
-        write!(f, "steps must satisfy 0 < least <= largest <= 1/2, found {least} and {largest}")
+        write!(f, "steps must satisfy 2^-53 <= least <= largest <= 1/2, found {least} and {largest}")
     }
 }
 
 impl std::error::Error for SmallStepError {}
 
 /// 2^53: points of the lattice.
-const POINTS: u64 = 1 << 53;
+const POINTS: i64 = 1 << 53;
+
+const HALF: i64 = POINTS / 2;
 
 impl SmallStep {
     /// Steps between `least` and `largest` \[1\].
     ///
     /// # Errors
-    /// If they are not ordered: 0 < least ≤ largest ≤ 1/2.
+    /// If they are not ordered: 2^-53 ≤ least ≤ largest ≤ 1/2.
     pub fn new(least: f64, largest: f64) -> Result<Self, SmallStepError> {
-        if 0.0 < least && least <= largest && largest <= 0.5 {
+        if 1.0 <= least * POINTS as f64 && least <= largest && largest <= 0.5 {
             Ok(Self { least, largest, log2_ratio: (largest / least).log2() })
         } else {
             Err(SmallStepError::NotOrdered { least, largest })
@@ -82,12 +87,15 @@ impl SmallStep {
     #[inline]
     #[must_use]
     pub fn from(self, u: f64, chance: f64) -> f64 {
-        let is_forwards = chance < 0.5;
-        let share = if is_forwards { 2.0 * chance } else { 2.0 * chance - 1.0 };
-        let distance = self.largest * (-share * self.log2_ratio).exp2();
-        let at = (u * POINTS as f64) as u64;
-        let by = (distance * POINTS as f64) as u64;
-        let to = if is_forwards { at + by } else { at + POINTS - by };
+        // Whole numbers, and no branch on chance. The first digit is the direction, 0 or −1 forwards and backwards, the others the distance.
+        let digits = (chance * POINTS as f64) as i64;
+        let backwards = -(digits >> 52);
+        let octaves = (digits & (HALF - 1)) as f64 * (1.0 / HALF as f64) * self.log2_ratio;
+        let whole = octaves as i64;
+        let halved = f64::from_bits(((1023 - whole) << 52) as u64);
+        let by = (self.largest * halved * (1.0 - 0.5 * (octaves - whole as f64)) * POINTS as f64) as i64;
+        let at = (u * POINTS as f64) as i64;
+        let to = at + ((by ^ backwards) - backwards);
         (to & (POINTS - 1)) as f64 * (1.0 / POINTS as f64)
     }
 }
@@ -132,12 +140,13 @@ mod tests {
         let step = SmallStep::new(1.0 / 1024.0, 1.0 / 16.0).unwrap();
         assert_eq!(step, SmallStep::default());
         assert_eq!(step.largest(), 1.0 / 16.0);
-        // Half of the way between the logarithms.
+        // Half of the way between the logarithms, and half an octave further.
         assert!((step.from(0.5, 0.25) - 0.5 - 1.0 / 128.0).abs() < 1e-15);
+        assert!((step.from(0.5, 0.25 + 1.0 / 24.0) - 0.5 - 0.75 / 128.0).abs() < 1e-15);
         assert!((step.from(0.5, LARGEST_VARIATE) - 0.5 + 1.0 / 1024.0).abs() < 1e-15);
         for (least, largest) in [(0.0, 0.1), (0.2, 0.1), (0.1, 0.6), (f64::NAN, 0.1)] {
             let error = SmallStep::new(least, largest).unwrap_err();
-            assert!(error.to_string().contains("0 < least <= largest <= 1/2"));
+            assert!(error.to_string().contains("2^-53 <= least <= largest <= 1/2"));
         }
     }
 }

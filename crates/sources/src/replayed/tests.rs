@@ -117,8 +117,9 @@ fn choices_are_kept_or_made_anew() {
     };
     let small = Step::Small(SmallStep::default());
     assert_eq!(one(Step::Large, &[0.3, 0.6]), [0.3, 0.6]);
-    assert_eq!(one(small, &[0.1]), [0.3, 0.6]);
-    assert_eq!(one(small, &[0.09, 0.9]), [0.3, 0.9]);
+    // Of the steps that the two are given first, neither is taken.
+    assert_eq!(one(small, &[0.7, 0.7, 0.1]), [0.3, 0.6]);
+    assert_eq!(one(small, &[0.7, 0.7, 0.09, 0.9]), [0.3, 0.9]);
     assert_eq!(one(Step::Large, &[0.7, 0.8]), [0.7, 0.8]);
 }
 

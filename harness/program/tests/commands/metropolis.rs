@@ -82,7 +82,7 @@ fn unlawful_keys_are_refused() {
         (over(json!({ "replicas": 100 })), "integrator.replicas: 100 of them need at least as many samples"),
         (over(json!({ "chains": 1000 })), "integrator.chains"),
         (over(json!({ "large_step": 1.5 })), "integrator.large_step"),
-        (over(json!({ "step": [0.1, 0.01] })), "0 < least <= largest <= 1/2"),
+        (over(json!({ "step": [0.1, 0.01] })), "2^-53 <= least <= largest <= 1/2"),
         (over(json!({ "step": [0.1] })), "a list of two steps"),
         (over(json!({ "bootstrap": 0 })), "integrator.bootstrap"),
         (over(json!({ "colour": "separate" })), "integrator.colour: separate would be three targets"),
