@@ -64,7 +64,7 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("vpl", &["paths"]),
     ("photons", &["vpl"]),
     ("bidirectional", &["paths"]),
-    ("metropolis", &["paths"]),
+    ("metropolis", &["bidirectional"]),
     ("compensation", &["vpl"]),
     ("laws", &["stats", "transmittance", "freeflight"]),
     ("catalogue", &["laws", "paths", "vpl", "photons", "bidirectional", "metropolis", "compensation"]),

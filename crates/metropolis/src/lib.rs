@@ -1,0 +1,1 @@
+//! Metropolis sampling of light paths in participating media (antwerpen-2011 chapter 6, raab-2008 4.4).
