@@ -26,16 +26,8 @@ impl<'s> Path<'s> {
         eye: &Subpath<W::Spectrum>,
         light: &Subpath<W::Spectrum>,
     ) -> Self {
-        let (s, t) = (found.strategy.light as usize, found.strategy.eye as usize);
-        // The last of the t eye vertices is the end itself where the light was met.
-        let eye_places = eye.steps[..(t - 1).saturating_sub(usize::from(s == 0))].iter();
-        let mut places: Vec<Place> = eye_places.map(|step| step.node.place).collect();
-        let (emitter, at) = found.end.unwrap_or_else(|| {
-            let start = light.start.expect("a light vertex comes from a light");
-            let line = start.segment.line;
-            (start.light, if start.segment.from.is_some() { line.origin } else { -line.direction })
-        });
-        places.extend(light.steps[..s.saturating_sub(1)].iter().rev().map(|step| step.node.place.reversed()));
+        let (emitter, at) = found.light_end(light);
+        let places = found.places(eye, light).collect();
         Self { places, end: LightEnd::new(world, emitters, emitter, at) }
     }
 }

@@ -114,6 +114,20 @@ impl Camera {
     /// Image of a point; `None` beside the picture, behind the camera, or at the pinhole itself.
     #[must_use]
     pub fn project(&self, point: DVec3) -> Option<Projection> {
+        let [x, y] = self.film(point)?;
+        let offset = point - self.origin;
+        let distance = offset.length();
+        Some(Projection {
+            pixel: [x as u32, y as u32],
+            distance,
+            towards_camera: -offset / distance,
+            importance: self.importance_at(distance, offset.dot(self.forward) / distance),
+        })
+    }
+
+    /// Column and row of the image of a point, with their fractions: [`ray`](Self::ray) of pixel (0, 0) goes there. `None` as for [`project`](Self::project).
+    #[must_use]
+    pub fn film(&self, point: DVec3) -> Option<[f64; 2]> {
         let offset = point - self.origin;
         let depth = offset.dot(self.forward);
         if depth <= 0.0 {
@@ -122,16 +136,7 @@ impl Camera {
         let [columns, rows] = self.resolution.map(f64::from);
         let x = 0.5 * (offset.dot(self.right) / depth / self.half_extent.x + 1.0) * columns;
         let y = 0.5 * (1.0 - offset.dot(self.up) / depth / self.half_extent.y) * rows;
-        if !(0.0 <= x && x < columns && 0.0 <= y && y < rows) {
-            return None;
-        }
-        let distance = offset.length();
-        Some(Projection {
-            pixel: [x as u32, y as u32],
-            distance,
-            towards_camera: -offset / distance,
-            importance: self.importance_at(distance, depth / distance),
-        })
+        (0.0 <= x && x < columns && 0.0 <= y && y < rows).then_some([x, y])
     }
 
     /// The importance of a [`Projection`] of `point`, also where that would lie beside the image: for a point of a ray through a pixel, which
@@ -192,6 +197,8 @@ mod tests {
             let ray = camera.ray(pixel, [0.3, 0.6]);
             let seen = camera.project(ray.at(17.0)).unwrap();
             assert_eq!(seen.pixel, pixel);
+            let film = camera.film(ray.at(17.0)).unwrap();
+            assert!((camera.ray([0, 0], film).direction - ray.direction).length() < 1e-14);
             assert!((seen.distance - 17.0).abs() < 1e-12);
             assert!((seen.towards_camera + ray.direction).length() < 1e-14);
             assert_eq!(camera.importance(ray.at(17.0)), seen.importance);
