@@ -10,6 +10,7 @@ use crate::{Mutation, acceptance};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::family::sidak_level;
 use fairflight_stats::{Moments, Reference, Verdict, judge};
+use std::fmt;
 
 /// A bounded function of a state.
 pub type Probe<'p, X> = &'p dyn Fn(&X) -> f64;
@@ -18,7 +19,6 @@ pub type Probe<'p, X> = &'p dyn Fn(&X) -> f64;
 ///
 /// A function that the mutation leaves as it is has a drift of 0 but for rounding, whose sign may be the same each time: it is named as one of `kept`, and
 /// serves as g' only.
-#[derive(Clone, Copy)]
 pub struct Probes<'p, X> {
     /// Functions that change.
     pub moved: &'p [Probe<'p, X>],
@@ -26,7 +26,21 @@ pub struct Probes<'p, X> {
     pub kept: &'p [Probe<'p, X>],
 }
 
-/// What a run of independent steps said of one antisymmetric function.
+impl<X> Clone for Probes<'_, X> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<X> Copy for Probes<'_, X> {}
+
+impl<X> fmt::Debug for Probes<'_, X> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (moved, kept) = (self.moved.len(), self.kept.len());
+        formatter.debug_struct("Probes").field("moved", &moved).field("kept", &kept).finish()
+    }
+}
+
+/// Result of independent steps for one antisymmetric function.
 #[derive(Clone, Debug)]
 pub struct Drift {
     /// Indices of g and g', those of `kept` behind those of `moved`; without g' the function is g(Y) − g(X).
@@ -39,7 +53,7 @@ pub struct Drift {
     pub verdict: Verdict,
 }
 
-/// What a run of independent steps said of a mutation.
+/// Result of independent steps of a mutation.
 #[derive(Clone, Debug)]
 pub struct Judged {
     /// E\[W a\]/E\[W\]: the share of steps of a stationary chain that are accepted.

@@ -2,5 +2,6 @@
 
 pub mod laws;
 mod mutation;
+pub mod path;
 
 pub use mutation::{Mutation, acceptance};

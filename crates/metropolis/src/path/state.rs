@@ -1,0 +1,368 @@
+//! A light path as the state of a chain.
+
+use super::coordinates::{Made, ln_product};
+use super::{Met, PathWorld};
+use fairflight_bidirectional::{Found, Site, Subpath};
+use fairflight_media::Line;
+use fairflight_paths::transport::Light;
+use fairflight_scene::surface::{fresnel_reflectance, reflect, refract};
+use fairflight_scene::{Material, Segment, Spectrum};
+use fairflight_sources::UniformSource;
+use glam::DVec3;
+
+/// A path x_0 … x_k from the pinhole to a light, with what scattering and edges are made of.
+///
+/// **Measure.** Area on surfaces, volume in the medium, solid angle at an infinitely far end, counting measure at the pinhole and at lights without
+/// extent: raab-2008 section 2 in one measure. Its contribution there is
+///
+/// ```text
+/// f(x) = importance(x_1) D(x_1) T · Π_(0<i<k) D(x_i) D(x_(i+1))/r² T V · Π_(0<i<k) f_s(x_i) · L_e(x_k)
+/// ```
+///
+/// with D = |cosine| on a surface and 1 elsewhere, f_s = 1/π · reflectance on one side, or σ_t · albedo · phase. A smooth vertex has no place of its own:
+/// f_s = F/ratio there, with Fresnel's share F of what is reflected or refracted and the ratio of indices light side/eye side, and it stands for the
+/// Dirac of a density that is ratio · |cosine| per solid angle towards the light, and |cosine|/ratio towards the camera
+/// (`Place::scatter` of the bidirectional integrator has the same convention, but no F, which cancels there).
+#[derive(Debug, Default, PartialEq)]
+pub struct PathState {
+    /// x_0 … x_k.
+    pub vertices: Vec<PathVertex>,
+    /// The edge behind each vertex but the last.
+    pub edges: Vec<PathEdge>,
+    /// Column and row of x_1's image, with their fractions.
+    pub film: [f64; 2],
+}
+
+/// Written into a path, another allocates nothing where that was as long.
+impl Clone for PathState {
+    fn clone(&self) -> Self {
+        Self { vertices: self.vertices.clone(), edges: self.edges.clone(), film: self.film }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.vertices.clone_from(&other.vertices);
+        self.edges.clone_from(&other.edges);
+        self.film = other.film;
+    }
+}
+
+/// A vertex of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathVertex {
+    /// Point in space; the direction towards an infinitely far light, of unit length.
+    pub position: DVec3,
+    /// Scattering there, or the end of the path.
+    pub site: PathSite,
+    /// Reflectance, albedo, or strength of a light ([`PathWorld::strength`]).
+    pub colour: DVec3,
+}
+
+/// Scattering at a vertex, or an end of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathSite {
+    /// The pinhole.
+    Pinhole,
+    /// A point of the medium.
+    Medium {
+        /// σ_t there \[1/length\].
+        sigma_t: f64,
+    },
+    /// A diffuse surface.
+    Diffuse {
+        /// Normal of unit length, on either side.
+        normal: DVec3,
+        /// The surface.
+        surface: usize,
+    },
+    /// A mirror, or an interface.
+    Smooth {
+        /// Normal of unit length, on either side.
+        normal: DVec3,
+        /// The surface.
+        surface: usize,
+        /// Index of refraction on the side of the light over that on the side of the camera; 1 for a reflection.
+        ratio: f64,
+        /// Reflection, or refraction.
+        reflects: bool,
+        /// F, or 1 − F: the share of light that goes this way.
+        share: f64,
+    },
+    /// A point of a surface that emits.
+    Lamp {
+        /// Normal of unit length, on either side.
+        normal: DVec3,
+        /// The surface.
+        surface: usize,
+    },
+    /// A point light, by its index.
+    Point(usize),
+    /// A direction from which light comes: constant background, map, or directional light.
+    Far(Light),
+}
+
+/// An edge of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathEdge {
+    /// The direction from the vertex on the camera's side, of unit length.
+    pub direction: DVec3,
+    /// Distance of its ends \[length\]; infinite where the light is.
+    pub length: f64,
+    /// ln T, or of the estimate of it that belongs to this edge.
+    pub ln_transmittance: f64,
+}
+
+impl PathVertex {
+    /// The surface that it lies on.
+    #[inline]
+    #[must_use]
+    pub fn surface(&self) -> Option<usize> {
+        match self.site {
+            PathSite::Diffuse { surface, .. }
+            | PathSite::Smooth { surface, .. }
+            | PathSite::Lamp { surface, .. } => Some(surface),
+            PathSite::Pinhole | PathSite::Medium { .. } | PathSite::Point(_) | PathSite::Far(_) => None,
+        }
+    }
+
+    /// D: |cosine| on a surface, 1 elsewhere.
+    #[inline]
+    #[must_use]
+    pub fn facing(&self, direction: DVec3) -> f64 {
+        match self.site {
+            PathSite::Diffuse { normal, .. }
+            | PathSite::Smooth { normal, .. }
+            | PathSite::Lamp { normal, .. } => normal.dot(direction).abs(),
+            PathSite::Pinhole | PathSite::Medium { .. } | PathSite::Point(_) | PathSite::Far(_) => 1.0,
+        }
+    }
+
+    /// Returns true on a mirror or an interface: the direction on one side follows from that on the other.
+    #[inline]
+    #[must_use]
+    pub fn is_smooth(&self) -> bool {
+        matches!(self.site, PathSite::Smooth { .. })
+    }
+
+    /// Returns true in the medium.
+    #[inline]
+    #[must_use]
+    pub fn is_in_medium(&self) -> bool {
+        matches!(self.site, PathSite::Medium { .. })
+    }
+
+    /// f_s, without the colour, for the directions of the edges before and behind, from the camera to the light; 1 at the ends of a path.
+    #[inline]
+    #[must_use]
+    pub fn scatter(&self, world: &dyn PathWorld, before: DVec3, behind: DVec3) -> f64 {
+        match self.site {
+            PathSite::Medium { sigma_t } => sigma_t * world.phase(before.dot(behind)),
+            PathSite::Diffuse { normal, .. } => {
+                if normal.dot(before) * normal.dot(behind) < 0.0 {
+                    std::f64::consts::FRAC_1_PI
+                } else {
+                    0.0
+                }
+            }
+            PathSite::Smooth { ratio, share, .. } => share / ratio,
+            PathSite::Pinhole | PathSite::Lamp { .. } | PathSite::Point(_) | PathSite::Far(_) => 1.0,
+        }
+    }
+}
+
+/// Continuation behind a smooth surface in a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Continuation {
+    /// The vertex.
+    pub(super) site: PathSite,
+    /// The direction of travel behind it.
+    pub(super) direction: DVec3,
+}
+
+/// The way to an end of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Towards {
+    /// To the camera: x_k to x_0.
+    Eye,
+    /// To the light: x_0 to x_k.
+    Light,
+}
+
+impl Continuation {
+    /// Reflects or refracts what comes along `direction`; `None` where that material does not, or for total reflection.
+    pub(super) fn at(
+        world: &dyn PathWorld,
+        met: &Met,
+        direction: DVec3,
+        reflects: bool,
+        towards: Towards,
+    ) -> Option<Self> {
+        let Met { normal, surface, outside, .. } = *met;
+        let relative = match world.surface(surface).0 {
+            Material::Diffuse { .. } => return None,
+            Material::Mirror => {
+                let site = PathSite::Smooth { normal, surface, ratio: 1.0, reflects, share: 1.0 };
+                return reflects.then(|| Self { site, direction: reflect(direction, normal) });
+            }
+            Material::Dielectric { ior } => {
+                if outside {
+                    ior
+                } else {
+                    1.0 / ior
+                }
+            }
+        };
+        let reflected = fresnel_reflectance(-normal.dot(direction), relative);
+        let (direction, ratio, share) = if reflects {
+            (reflect(direction, normal), 1.0, reflected)
+        } else {
+            let ratio = if towards == Towards::Light { relative } else { 1.0 / relative };
+            (refract(direction, normal, relative)?, ratio, 1.0 - reflected)
+        };
+        let site = PathSite::Smooth { normal, surface, ratio, reflects, share };
+        Some(Self { site, direction })
+    }
+}
+
+impl PathState {
+    /// k: the number of edges.
+    #[inline]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Returns true for the state that no path was written into.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.edges.is_empty()
+    }
+
+    /// The pixel of the path.
+    #[inline]
+    #[must_use]
+    pub fn pixel(&self) -> [u32; 2] {
+        self.film.map(|coordinate| coordinate as u32)
+    }
+
+    /// The product of reflectances, albedos and the strength of the light.
+    #[inline]
+    #[must_use]
+    pub fn colour(&self) -> DVec3 {
+        self.vertices.iter().fold(DVec3::ONE, |product, vertex| product * vertex.colour)
+    }
+
+    /// ln f, by the greatest channel, computed anew from vertices and edges.
+    #[must_use]
+    pub fn ln_contribution(&self, world: &dyn PathWorld) -> f64 {
+        ln_product(world, self, 0..self.len(), |_| Made::Connected, false) + self.colour().max_element().ln()
+    }
+
+    /// Writes the path that a strategy of the bidirectional integrator found; false where rounding puts x_1 beside the image. Its weight f/p is the
+    /// value that was found, of which the sum over strategies is the contribution of the path by all of them.
+    ///
+    /// With random transmittance the edges are drawn anew: that is a state of the chain with a weight of its own
+    /// ([`NullCollisions`](super::NullCollisions)).
+    pub fn set_found<C: Spectrum>(
+        &mut self,
+        world: &dyn PathWorld,
+        (found, eye, light): (&Found<C>, &Subpath<C>, &Subpath<C>),
+        source: &mut dyn UniformSource,
+    ) -> bool {
+        let origin = world.camera().origin();
+        self.vertices.clear();
+        self.vertices.push(PathVertex { position: origin, site: PathSite::Pinhole, colour: DVec3::ONE });
+        for place in found.places(eye, light) {
+            let (site, colour) = match place.site {
+                Site::Medium { sigma_t } => (PathSite::Medium { sigma_t }, world.albedo()),
+                Site::Diffuse { normal, surface } => {
+                    let Material::Diffuse { reflectance } = world.surface(surface).0 else {
+                        unreachable!("the vertex was diffuse")
+                    };
+                    (PathSite::Diffuse { normal, surface }, reflectance)
+                }
+                // Which way it goes, and how much, is seen when both neighbours are known.
+                Site::Smooth { normal, surface, ratio } => {
+                    (PathSite::Smooth { normal, surface, ratio, reflects: false, share: 1.0 }, DVec3::ONE)
+                }
+            };
+            self.vertices.push(PathVertex { position: place.position, site, colour });
+        }
+        let (end, at) = found.light_end(light);
+        let site = match end {
+            Light::Surface(surface) => PathSite::Lamp { normal: world.outer_side(surface, at).0, surface },
+            Light::Source(index) if world.point_light(index).is_some() => PathSite::Point(index),
+            Light::Constant | Light::Map(_) | Light::Source(_) => PathSite::Far(end),
+        };
+        let place = if let Light::Source(index) = end { world.point_light(index) } else { None };
+        let position = place.unwrap_or(at);
+        self.vertices.push(PathVertex { position, site, colour: world.strength(end, at) });
+        self.edges.clear();
+        for i in 0..self.vertices.len() - 1 {
+            let segment = self.segment(i);
+            let (direction, length) = (segment.line.direction, segment.length);
+            self.edges.push(PathEdge {
+                direction,
+                length,
+                ln_transmittance: world.ln_transmittance(&segment, source),
+            });
+        }
+        for i in 1..self.len() {
+            self.set_passage(world, i);
+        }
+        let film = world.camera().film(self.film_point());
+        self.film = film.unwrap_or_default();
+        film.is_some()
+    }
+
+    /// A point that the first edge goes through.
+    fn film_point(&self) -> DVec3 {
+        self.vertices[0].position + self.edges[0].direction
+    }
+
+    /// Tells reflection from refraction at a smooth vertex by its edges, and finds the share of light that goes this way.
+    fn set_passage(&mut self, world: &dyn PathWorld, i: usize) {
+        let (before, behind) = (self.edges[i - 1].direction, self.edges[i].direction);
+        let PathSite::Smooth { normal, reflects, .. } = &mut self.vertices[i].site else { return };
+        *reflects = normal.dot(before) * normal.dot(behind) < 0.0;
+        // Where rounding says that nothing is refracted, next to nothing is.
+        if let Some(continuation) = self.pass(world, i, before) {
+            self.vertices[i].site = continuation.site;
+        }
+    }
+
+    /// Reflection or refraction at the smooth vertex `i`, of its kind, for what comes along `incident` from the camera's side.
+    pub(super) fn pass(&self, world: &dyn PathWorld, i: usize, incident: DVec3) -> Option<Continuation> {
+        let PathVertex { position, site, .. } = self.vertices[i];
+        let PathSite::Smooth { surface, reflects, .. } = site else { return None };
+        let outer = world.outer_side(surface, position).0;
+        let outside = outer.dot(incident) < 0.0;
+        let normal = if outside { outer } else { -outer };
+        let met = Met { distance: 0.0, position, normal, outside, surface };
+        Continuation::at(world, &met, incident, reflects, Towards::Light)
+    }
+
+    /// One of the vertices between the ends that are of some kind, each as likely as the others.
+    pub(super) fn choose_vertex(
+        &self,
+        is_one: impl Fn(&PathVertex) -> bool,
+        source: &mut dyn UniformSource,
+    ) -> Option<usize> {
+        let inner = 1..self.len();
+        let count = inner.clone().filter(|&i| is_one(&self.vertices[i])).count();
+        let chosen = (source.next_uniform() * count as f64) as usize;
+        inner.filter(|&i| is_one(&self.vertices[i])).nth(chosen)
+    }
+
+    /// The segment of edge `i` between the vertices as they are.
+    pub(super) fn segment(&self, i: usize) -> Segment {
+        let [from, to] = [&self.vertices[i], &self.vertices[i + 1]];
+        if matches!(to.site, PathSite::Far(_)) {
+            let line = Line { origin: from.position, direction: to.position };
+            return Segment { line, length: f64::INFINITY, from: from.surface(), to: None };
+        }
+        let offset = to.position - from.position;
+        let length = offset.length();
+        let line = Line { origin: from.position, direction: offset / length };
+        Segment { line, length, from: from.surface(), to: to.surface() }
+    }
+}
