@@ -12,11 +12,13 @@
 //! | [`Propagation`] | ln of a distance | one vertex in the medium |
 //!
 //! None of them changes the number or the kinds of vertices, and none chooses by anything else: no probability of a choice is left in a ratio.
+//! Transmittance is a closed form, or the product over [`NullCollisions`] that belong to the state.
 
 mod caustic;
 mod coordinates;
 mod lai_lens;
 mod lens;
+mod nulls;
 mod propagation;
 mod proposal;
 mod scattering;
@@ -26,6 +28,7 @@ mod world;
 pub use caustic::Caustic;
 pub use lai_lens::LaiLens;
 pub use lens::Lens;
+pub use nulls::{NoMajorant, NullCollisions};
 pub use propagation::Propagation;
 pub use proposal::StepSizes;
 pub use scattering::Scattering;

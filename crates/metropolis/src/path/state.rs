@@ -260,8 +260,8 @@ impl PathState {
     /// Writes the path that a strategy of the bidirectional integrator found; false where rounding puts x_1 beside the image. Its weight f/p is the
     /// value that was found, of which the sum over strategies is the contribution of the path by all of them.
     ///
-    /// With random transmittance the edges are drawn anew: that is a state of the chain with a weight of its own
-    /// ([`NullCollisions`](super::NullCollisions)).
+    /// Estimates of transmittance are drawn anew, as a path of that weight has them ([`EdgeTransmittance::ln_found`](super::EdgeTransmittance::ln_found)),
+    /// whatever those were that its weight was found with.
     pub fn set_found<C: Spectrum>(
         &mut self,
         world: &dyn PathWorld,
@@ -303,7 +303,7 @@ impl PathState {
             self.edges.push(PathEdge {
                 direction,
                 length,
-                ln_transmittance: world.ln_transmittance(&segment, source),
+                ln_transmittance: world.ln_found(&segment, source),
             });
         }
         for i in 1..self.len() {
@@ -354,7 +354,8 @@ impl PathState {
     }
 
     /// The segment of edge `i` between the vertices as they are.
-    pub(super) fn segment(&self, i: usize) -> Segment {
+    #[must_use]
+    pub fn segment(&self, i: usize) -> Segment {
         let [from, to] = [&self.vertices[i], &self.vertices[i + 1]];
         if matches!(to.site, PathSite::Far(_)) {
             let line = Line { origin: from.position, direction: to.position };

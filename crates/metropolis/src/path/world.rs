@@ -24,6 +24,9 @@ pub trait PathWorld {
     /// The logarithm of the transmittance of a segment, or of an estimate of it that stays with the path ([`NullCollisions`](super::NullCollisions)).
     fn ln_transmittance(&self, segment: &Segment, source: &mut dyn UniformSource) -> f64;
 
+    /// The same for an edge of a path that was found elsewhere ([`EdgeTransmittance::ln_found`]).
+    fn ln_found(&self, segment: &Segment, source: &mut dyn UniformSource) -> f64;
+
     /// The extinction at a point, 0 outside the medium \[1/length\].
     fn sigma_t(&self, point: DVec3) -> f64;
 
@@ -67,8 +70,14 @@ pub struct Met {
 /// **Law.** The exponential of what is returned has the expectation exp(−∫ σ_t), and is nowhere negative. An estimate is part of the state: it
 /// is drawn when an edge changes, and stays with the edge as long as that does not.
 pub trait EdgeTransmittance<M> {
-    /// Its logarithm along a ray in the medium.
+    /// Its logarithm along a ray in the medium, of an edge that a mutation makes.
     fn ln_transmittance(&self, ray: &Ray<&M>, source: &mut dyn UniformSource) -> f64;
+
+    /// The same of an edge of a path that was found with a weight: drawn with a density that is the estimate itself over the transmittance, times that of
+    /// [`ln_transmittance`](Self::ln_transmittance). Where nothing is drawn the two are one.
+    fn ln_found(&self, ray: &Ray<&M>, source: &mut dyn UniformSource) -> f64 {
+        self.ln_transmittance(ray, source)
+    }
 }
 
 /// The closed form: nothing is drawn.
@@ -92,6 +101,13 @@ pub struct View<'s, W: Types, E> {
 impl<W: Types, E: fmt::Debug> fmt::Debug for View<'_, W, E> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_struct("View").field("edges", &self.edges).finish_non_exhaustive()
+    }
+}
+
+impl<W: Types, E> View<'_, W, E> {
+    fn enter(&self, segment: &Segment) -> Option<Ray<&W::Medium>> {
+        let length = segment.length.is_finite().then_some(segment.length);
+        self.world.volume.enter(&segment.line, length)
     }
 }
 
@@ -120,11 +136,11 @@ impl<W: Types, E: EdgeTransmittance<W::Medium>> PathWorld for View<'_, W, E> {
     }
 
     fn ln_transmittance(&self, segment: &Segment, source: &mut dyn UniformSource) -> f64 {
-        let length = segment.length.is_finite().then_some(segment.length);
-        match self.world.volume.enter(&segment.line, length) {
-            Some(ray) => self.edges.ln_transmittance(&ray, source),
-            None => 0.0,
-        }
+        self.enter(segment).map_or(0.0, |ray| self.edges.ln_transmittance(&ray, source))
+    }
+
+    fn ln_found(&self, segment: &Segment, source: &mut dyn UniformSource) -> f64 {
+        self.enter(segment).map_or(0.0, |ray| self.edges.ln_found(&ray, source))
     }
 
     fn sigma_t(&self, point: DVec3) -> f64 {

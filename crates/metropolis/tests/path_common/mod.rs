@@ -8,7 +8,7 @@ mod shapes;
 use fairflight_bidirectional::{Bidirectional, Exact, Subpath, Walking, Weigh};
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Bounds, Homogeneous, Line, PhaseFunction};
+use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, Line, LineThickness, PhaseFunction};
 use fairflight_metropolis::laws::Probe;
 use fairflight_metropolis::path::{
     Met, PathEdge, PathSite, PathState, PathVertex, PathWorld, StepSizes, View,
@@ -25,11 +25,11 @@ use glam::{DVec3, dvec3};
 use shapes::{ball, diffuse, rectangle};
 use std::f64::consts::PI;
 
-pub type Made = MadeOf<f64, Homogeneous, HenyeyGreenstein, Surfaces<f64>, Uniform, Regular>;
+pub type Made<M> = MadeOf<f64, M, HenyeyGreenstein, Surfaces<f64>, Uniform, Regular>;
 
-pub struct Scene {
+pub struct Scene<M = Homogeneous> {
     pub camera: Camera,
-    pub volume: Volume<Homogeneous, HenyeyGreenstein, f64>,
+    pub volume: Volume<M, HenyeyGreenstein, f64>,
     pub surfaces: Surfaces<f64>,
     pub lights: Lights<f64>,
 }
@@ -42,10 +42,14 @@ fn phase() -> HenyeyGreenstein {
 }
 
 fn scene(surfaces: Vec<Surface<f64>>) -> Scene {
+    with(Homogeneous::new(SIGMA_T).unwrap(), surfaces)
+}
+
+fn with<M>(medium: M, surfaces: Vec<Surface<f64>>) -> Scene<M> {
     let bounds = Bounds::aligned_box(dvec3(-2.0, -1.0, -0.5), dvec3(2.0, 0.5, 3.0)).unwrap();
     Scene {
         camera: Camera::new(DVec3::ZERO, DVec3::Z, DVec3::Y, 100.0, [1, 1]).unwrap(),
-        volume: Volume { medium: Homogeneous::new(SIGMA_T).unwrap(), bounds, albedo: 0.8, phase: phase() },
+        volume: Volume { medium, bounds, albedo: 0.8, phase: phase() },
         surfaces: Surfaces::new(surfaces),
         lights: Lights { background: Background::dark(), sources: vec![] },
     }
@@ -62,6 +66,11 @@ fn lamp() -> Surface<f64> {
 /// Haze over a floor, seen from inside with a wide view, under a lamp.
 pub fn hall() -> Scene {
     scene(vec![floor(), lamp()])
+}
+
+/// The same hall with uneven smoke.
+pub fn smoke() -> Scene<AnalyticCosine> {
+    with(AnalyticCosine::new(SIGMA_T).unwrap(), vec![floor(), lamp()])
 }
 
 /// A wall of mirror beside haze under a lamp that shines to it.
@@ -87,13 +96,17 @@ pub fn sky() -> Scene {
     Scene { lights, ..scene(vec![floor(), ball(dvec3(-0.4, -0.3, 1.4), 0.5, Material::Mirror, 0.0)]) }
 }
 
-impl Scene {
-    pub fn world(&self) -> World<'_, Made> {
+impl<M: LineThickness> Scene<M> {
+    pub fn world(&self) -> World<'_, Made<M>> {
         World::new(&self.volume, &self.surfaces, &self.lights)
     }
 
-    pub fn view(&self) -> View<'_, Made, Exact> {
-        View { world: self.world(), camera: &self.camera, edges: Exact }
+    pub fn view(&self) -> View<'_, Made<M>, Exact> {
+        self.view_by(Exact)
+    }
+
+    pub fn view_by<E>(&self, edges: E) -> View<'_, Made<M>, E> {
+        View { world: self.world(), camera: &self.camera, edges }
     }
 
     pub fn emitters(&self) -> Emitters<f64> {
@@ -103,9 +116,9 @@ impl Scene {
 
 /// Independent paths by all strategies of the bidirectional integrator, of up to `longest` edges.
 pub struct Paths<'s> {
-    integrator: Bidirectional<'s, Made, Exact>,
+    integrator: Bidirectional<'s, Made<Homogeneous>, Exact>,
     light: Subpath<f64>,
-    view: View<'s, Made, Exact>,
+    view: View<'s, Made<Homogeneous>, Exact>,
     longest: u32,
 }
 
@@ -199,10 +212,11 @@ impl Traced<'_> {
                 b'V' => {
                     segment.length = source.next_exponential() / SIGMA_T;
                     weight /= SIGMA_T * (-SIGMA_T * segment.length).exp();
-                    if world.is_occluded(&segment) || world.sigma_t(line.at(segment.length)) == 0.0 {
+                    let sigma_t = world.sigma_t(line.at(segment.length));
+                    if world.is_occluded(&segment) || sigma_t == 0.0 {
                         return None;
                     }
-                    (PathSite::Medium { sigma_t: SIGMA_T }, world.albedo())
+                    (PathSite::Medium { sigma_t }, world.albedo())
                 }
                 letter => {
                     let met = world.intersect(&segment)?;
