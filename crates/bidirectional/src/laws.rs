@@ -1,7 +1,8 @@
 //! Weights of a whole path, twice: recursively, as the integrator has them, and by all densities of all strategies (antwerpen-2011
 //! section 5.2).
 //!
-//! For tests: the second takes quadratic time, and nothing of the first enters it but the densities of single vertices.
+//! The second takes quadratic time, and nothing of the first enters it but the densities of single vertices: it is for tests, and for who needs the densities
+//! themselves.
 
 use crate::thickness::between;
 use crate::{Found, LightEnd, LogHeuristic, Node, Place, Subpath, Weigh, WeightThickness};
@@ -39,6 +40,14 @@ pub enum Side {
     Eye,
     /// The light.
     Light,
+}
+
+/// Logarithms of densities, and buffers to be filled again.
+#[derive(Clone, Debug, Default)]
+pub struct LnDensities {
+    eye: Vec<f64>,
+    light: Vec<f64>,
+    strategies: Vec<f64>,
 }
 
 /// Weights of (k + 1 − t, t) for t = 1 … k + 1; 0 where a strategy does not exist.
@@ -87,38 +96,14 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
             .collect()
     }
 
-    /// The same by the densities of all strategies, each a product over the whole path:
-    ///
-    /// ```text
-    /// p_(s,t) = Π_(0<i<t) P→(x_i) · Π_(t≤j<k) P←(x_j) · {P→(x_k), P_dir, P_sub}
-    /// ```
+    /// The same by the densities of all strategies ([`ln_densities`](Self::ln_densities)).
     pub fn direct(&self, path: &Path<'_>) -> Weights {
-        let Path { places, end } = path;
-        let k = places.len() + 1;
+        let k = path.places.len() + 1;
         if k == 1 {
             return vec![0.0, 1.0];
         }
-        let from_eye = self.ln_from_eye(path);
-        let from_light = self.ln_from_light(path);
-        let last = &places[k - 2];
-        let ln_if = |exists: bool, ln: f64| if exists { ln } else { f64::NEG_INFINITY };
-        let ln: Vec<f64> = (1..=k + 1)
-            .map(|t| {
-                let s = k + 1 - t;
-                let connectable = |i: usize| places[i - 1].is_connectable();
-                let product = from_eye[1..t].iter().chain(&from_light[t.min(k)..k]).copied();
-                let at_end = match s {
-                    0 => 0.0,
-                    1 => ln_if(connectable(k - 1), end.pdf_direct(last).ln()),
-                    _ => {
-                        let exists = connectable(t) && (t == 1 || connectable(t - 1));
-                        let count = if t == 1 { self.light_paths.ln() } else { 0.0 };
-                        ln_if(exists, end.pdf_start().ln() + count)
-                    }
-                };
-                accurate_sum(product.chain([at_end]))
-            })
-            .collect();
+        let mut densities = LnDensities::default();
+        let ln = self.ln_densities(path, &mut densities);
         let greatest = ln.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if self.heuristic == Heuristic::Maximum {
             // Of those as great the first: the least t.
@@ -130,13 +115,46 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         powers.iter().map(|power| power / sum).collect()
     }
 
+    /// ln of the densities of (k + 1 − t, t) for t = 1 … k + 1, k ≥ 2, each a product over the whole path, times n_L for t = 1; ln 0 where a strategy does not exist:
+    ///
+    /// ```text
+    /// p_(s,t) = Π_(0<i<t) P→(x_i) · Π_(t≤j<k) P←(x_j) · {P→(x_k), P_dir, P_sub}
+    /// ```
+    pub fn ln_densities<'l>(&self, path: &Path<'_>, buffers: &'l mut LnDensities) -> &'l [f64] {
+        let LnDensities { eye, light, strategies } = buffers;
+        let Path { places, end } = path;
+        let k = places.len() + 1;
+        self.ln_from_eye(path, eye);
+        self.ln_from_light(path, light);
+        let last = &places[k - 2];
+        let ln_if = |exists: bool, ln: f64| if exists { ln } else { f64::NEG_INFINITY };
+        strategies.clear();
+        strategies.extend((1..=k + 1).map(|t| {
+            let s = k + 1 - t;
+            let connectable = |i: usize| places[i - 1].is_connectable();
+            let product = eye[1..t].iter().chain(&light[t.min(k)..k]).copied();
+            let at_end = match s {
+                0 => 0.0,
+                1 => ln_if(connectable(k - 1), end.pdf_direct(last).ln()),
+                _ => {
+                    let exists = connectable(t) && (t == 1 || connectable(t - 1));
+                    let count = if t == 1 { self.light_paths.ln() } else { 0.0 };
+                    ln_if(exists, end.pdf_start().ln() + count)
+                }
+            };
+            accurate_sum(product.chain([at_end]))
+        }));
+        strategies
+    }
+
     /// ln P→(x_i), i = 1 … k, at index i.
-    fn ln_from_eye(&self, path: &Path<'_>) -> Vec<f64> {
+    fn ln_from_eye(&self, path: &Path<'_>, ln: &mut Vec<f64>) {
         let Path { places, end } = path;
         let (phase, volume) = (&self.world.volume.phase, self.world.volume);
         let origin = self.camera.origin();
         let k = places.len() + 1;
-        let mut ln = vec![0.0; k + 1];
+        ln.clear();
+        ln.resize(k + 1, 0.0);
         let first = &places[0];
         let importance = self.camera.importance(first.position);
         let towards = (first.position - origin).normalize();
@@ -153,14 +171,14 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
                 self.ln_edge(at, incident, &places[i - 1])
             };
         }
-        ln
     }
 
     /// ln P←(x_j), j = 1 … k − 1, at index j.
-    fn ln_from_light(&self, path: &Path<'_>) -> Vec<f64> {
+    fn ln_from_light(&self, path: &Path<'_>, ln: &mut Vec<f64>) {
         let Path { places, end } = path;
         let k = places.len() + 1;
-        let mut ln = vec![0.0; k + 1];
+        ln.clear();
+        ln.resize(k + 1, 0.0);
         let last = &places[k - 2];
         ln[k - 1] = end.ln_emitted(last) - self.to_light(end, last);
         for j in (1..k - 1).rev() {
@@ -171,7 +189,6 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
             };
             ln[j] = self.ln_edge(&at, incident, &places[j - 1]);
         }
-        ln
     }
 
     /// ln P of `to`, drawn from `at` where one arrived along `incident`.

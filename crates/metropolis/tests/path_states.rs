@@ -8,8 +8,8 @@ use fairflight_metropolis::path::{
     Caustic, LaiLens, Lens, PathSite, PathState, PathVertex, PathWorld, Propagation, Scattering, Towards,
 };
 use fairflight_scene::Segment;
-use fairflight_sources::{Seeded, UniformSource};
-use path_common::{Paths, SIGMA_T, Scene, Traced, fine_sizes, glass, hall, probes, signature, sky};
+use fairflight_sources::Seeded;
+use path_common::{Bank, SIGMA_T, Scene, Traced, bank, fine_sizes, glass, hall, probes, signature, sky};
 use std::collections::BTreeSet;
 
 type Boxed<'w> = Box<dyn Mutation<PathState> + 'w>;
@@ -25,33 +25,6 @@ const ALL: [(&str, Make); 8] = [
     ("propagation, eye", |world| Box::new(Propagation::new(world, fine_sizes(), Towards::Eye))),
     ("propagation, light", |world| Box::new(Propagation::new(world, fine_sizes(), Towards::Light))),
 ];
-
-/// Samples of which some path is wanted, with their states and weights: faint ones are left to roulette.
-fn samples(scene: &Scene, longest: u32, wanted: fn(&PathState) -> bool, (count, seed): (usize, u64)) -> Bank {
-    let emitters = scene.emitters();
-    let mut paths = Paths::new(scene, &emitters, longest);
-    let mut source = Seeded::new(seed);
-    let mut sum = 0.0;
-    for _ in 0..2000 {
-        paths.sample(&mut source, &mut |path, weight, _| sum += if wanted(path) { weight } else { 0.0 });
-    }
-    let threshold = 24.0 * sum / 2000.0;
-    let mut all = Bank::with_capacity(count);
-    while all.len() < count {
-        let mut kept = Vec::new();
-        paths.sample(&mut source, &mut |path, weight, source| {
-            if wanted(path) && source.next_uniform() * threshold < weight {
-                kept.push((path.clone(), weight.max(threshold) / threshold));
-            }
-        });
-        if !kept.is_empty() {
-            all.push(kept);
-        }
-    }
-    all
-}
-
-type Bank = Vec<Vec<(PathState, f64)>>;
 
 fn judge(bank: &Bank, mutation: &mut dyn Mutation<PathState>, seed: u64) -> Judged {
     let moved = probes(&[0, 1, 2, 3, 4, 5, 6, 7]);
@@ -85,14 +58,14 @@ fn all_agree(bank: &Bank, scene: &Scene, (kinds, detectable): (usize, f64), seed
 fn kinds_with_mirrors_and_glass() {
     let scene = glass();
     let wanted = |path: &PathState| path.len() > 1 && path.vertices.iter().any(PathVertex::is_smooth);
-    let bank = samples(&scene, 6, wanted, (40_000, 1));
+    let bank = bank(&scene, (6, 24.0), wanted, (40_000, 1));
     all_agree(&bank, &scene, (100, 0.5), 1);
 }
 
 #[test]
 fn kinds_under_a_sky_with_lights_of_all_sorts() {
     let scene = sky();
-    let bank = samples(&scene, 4, |path| path.len() > 1, (40_000, 1));
+    let bank = bank(&scene, (4, 24.0), |path| path.len() > 1, (40_000, 1));
     let ends: BTreeSet<String> =
         bank.iter().flatten().map(|(path, _)| format!("{:?}", path.vertices[path.len()].site)).collect();
     assert_eq!(ends.len(), 4, "{ends:?}");
@@ -145,7 +118,7 @@ fn the_contribution_is_weight_times_density() {
 fn a_proposal_is_a_path_of_the_same_kind() {
     for scene in [glass(), sky()] {
         let view = scene.view();
-        let bank = samples(&scene, 5, |path| path.len() > 1, (2000, 7));
+        let bank = bank(&scene, (5, 4.0), |path| path.len() > 1, (2000, 7));
         let mut source = Seeded::new(8);
         for (name, make) in ALL {
             let mut mutation = make(&view);
@@ -178,7 +151,7 @@ fn a_proposal_is_a_path_of_the_same_kind() {
 fn a_step_allocates_nothing() {
     let scene = glass();
     let view = scene.view();
-    let bank = samples(&scene, 6, |path| path.len() > 1, (500, 7));
+    let bank = bank(&scene, (6, 4.0), |path| path.len() > 1, (500, 7));
     for (name, make) in ALL {
         let mut mutation = make(&view);
         let mut y = PathState::default();

@@ -11,11 +11,13 @@
 //! | [`Scattering`] | a direction at a vertex, a distance | one side of the vertex |
 //! | [`Propagation`] | ln of a distance | one vertex in the medium |
 //!
-//! None of them changes the number or the kinds of vertices, and none chooses by anything else: no probability of a choice is left in a ratio.
+//! None of these changes the number or the kinds of vertices, and none chooses by anything else: no probability of a choice is left in a ratio. [`Fresh`]
+//! draws a path independently of the old one, by the strategies of the bidirectional integrator.
 //! Transmittance is a closed form, or the product over [`NullCollisions`] that belong to the state.
 
 mod caustic;
 mod coordinates;
+mod fresh;
 mod lai_lens;
 mod lens;
 mod nulls;
@@ -26,6 +28,7 @@ mod state;
 mod world;
 
 pub use caustic::Caustic;
+pub use fresh::Fresh;
 pub use lai_lens::LaiLens;
 pub use lens::Lens;
 pub use nulls::{NoMajorant, NullCollisions};

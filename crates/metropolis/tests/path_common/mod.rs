@@ -162,6 +162,40 @@ impl<'s> Paths<'s> {
     }
 }
 
+/// Samples, each with its states and their weights.
+pub type Bank = Vec<Vec<(PathState, f64)>>;
+
+/// Samples of the bidirectional integrator of which some path is wanted, with their states and weights. Roulette leaves out the faint ones: of less than
+/// `threshold` mean weights.
+pub fn bank(
+    scene: &Scene,
+    (longest, threshold): (u32, f64),
+    wanted: fn(&PathState) -> bool,
+    (count, seed): (usize, u64),
+) -> Bank {
+    let emitters = scene.emitters();
+    let mut paths = Paths::new(scene, &emitters, longest);
+    let mut source = Seeded::new(seed);
+    let mut sum = 0.0;
+    for _ in 0..2000 {
+        paths.sample(&mut source, &mut |path, weight, _| sum += if wanted(path) { weight } else { 0.0 });
+    }
+    let threshold = threshold * sum / 2000.0;
+    let mut all = Bank::with_capacity(count);
+    while all.len() < count {
+        let mut kept = Vec::new();
+        paths.sample(&mut source, &mut |path, weight, source| {
+            if wanted(path) && source.next_uniform() * threshold < weight {
+                kept.push((path.clone(), weight.max(threshold) / threshold));
+            }
+        });
+        if !kept.is_empty() {
+            all.push(kept);
+        }
+    }
+    all
+}
+
 /// Paths of one kind, as a path tracer would find them: by directions and flights from the camera, and a point of the lamp at the end.
 pub struct Traced<'w> {
     pub world: &'w dyn PathWorld,
