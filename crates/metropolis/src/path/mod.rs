@@ -25,6 +25,7 @@ mod propagation;
 mod proposal;
 mod scattering;
 mod state;
+mod vertex;
 mod world;
 
 pub use caustic::Caustic;
@@ -35,5 +36,6 @@ pub use nulls::{NoMajorant, NullCollisions};
 pub use propagation::Propagation;
 pub use proposal::StepSizes;
 pub use scattering::Scattering;
-pub use state::{PathEdge, PathSite, PathState, PathVertex, Towards};
+pub use state::PathState;
+pub use vertex::{PathEdge, PathSite, PathVertex, Towards};
 pub use world::{EdgeTransmittance, Met, PathWorld, View};

@@ -1,7 +1,7 @@
 //! A proposal, made vertex by vertex.
 
 use super::coordinates::{Made, ln_product};
-use super::state::Continuation;
+use super::vertex::Continuation;
 use super::{PathEdge, PathSite, PathState, PathVertex, PathWorld, Towards};
 use fairflight_media::Line;
 use fairflight_paths::transport::Light;
