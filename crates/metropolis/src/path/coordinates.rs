@@ -1,8 +1,8 @@
 //! Coordinates in which mutations are symmetric, and their Jacobians.
 //!
 //! A mutation that changes coordinates c of a path symmetrically has T(X|Y)/T(Y|X) = J(Y)/J(X), J = |dx/dc|: its ratio is f J(Y)/f J(X), a product over the
-//! part of the path that changes (antwerpen-2011 eq. 6.7 to 6.11, with media, and with the camera as its errors of print in eq. 3.18 and 6.5 are
-//! mended: 1/(d² cos³ A) is the density of x_1 across the ray per area of the film, not its inverse).
+//! part of the path that changes (antwerpen-2011 eq. 6.7 to 6.11, with media). The density of x_1 per area of the film is 1/(d² cos³ A), across the ray:
+//! antwerpen-2011 eq. 3.18 and 3.19 print the inverse, eq. 6.5 has it as here.
 
 use super::{PathSite, PathState, PathWorld};
 use std::ops::Range;

@@ -26,6 +26,7 @@ mod proposal;
 mod scattering;
 mod state;
 mod target;
+mod vertex;
 mod world;
 
 pub use caustic::Caustic;
@@ -36,6 +37,7 @@ pub use nulls::{NoMajorant, NullCollisions};
 pub use propagation::Propagation;
 pub use proposal::StepSizes;
 pub use scattering::Scattering;
-pub use state::{PathEdge, PathSite, PathState, PathVertex, Towards};
+pub use state::PathState;
 pub use target::{Named, NoMutation, PathTarget};
+pub use vertex::{PathEdge, PathSite, PathVertex, Towards};
 pub use world::{EdgeTransmittance, Met, PathWorld, View};

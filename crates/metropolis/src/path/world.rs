@@ -1,4 +1,4 @@
-//! Questions that mutations ask of a scene, whatever that is made of.
+//! Scenes as mutations see them, whatever they are made of.
 
 use fairflight_bidirectional::Exact;
 use fairflight_media::{Extinction, LineThickness, Medium, OpticalThickness, PhaseFunction, Ray};
@@ -18,7 +18,7 @@ pub trait PathWorld {
     /// The nearest surface on a segment.
     fn intersect(&self, segment: &Segment) -> Option<Met>;
 
-    /// Returns true if a surface lies between the ends of a segment; `is_closed` and the surface itself decide about its own ends.
+    /// Returns true if a surface lies between the ends of a segment ([`Geometry::is_occluded`]).
     fn is_occluded(&self, segment: &Segment) -> bool;
 
     /// The logarithm of the transmittance of a segment, or of an estimate of it that stays with the path ([`NullCollisions`](super::NullCollisions)).
