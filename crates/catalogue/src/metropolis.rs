@@ -34,7 +34,9 @@ fn over<R>(kind: Over, view: &View<Homogeneous>, work: impl FnOnce(&mut dyn Inte
         Over::PathTracer => work(&mut FromCamera::new(&view.camera, plain(view))),
         Over::Bidirectional => work(&mut FromBothEnds::new(joined())),
         Over::Multiplexed => {
-            let lengths = Lengths::new(1, &[2.0, 2.0, 1.0], (0.5, 0.7)).expect(LAWFUL);
+            // Roughly; the same for every run.
+            let light = FromBothEnds::new(joined()).light_by_length(2000, &mut Seeded::new(0));
+            let lengths = Lengths::new(1, &light, (0.3, 0.7)).expect(LAWFUL);
             work(&mut Multiplexed::new(joined(), lengths))
         }
     }

@@ -54,7 +54,7 @@ fn an_estimate_that_stays_with_its_state_is_as_good_as_the_truth() {
     let plan = Plan::new(16, 1, 30).unwrap();
     let mut target = Noisy { present: (0.0, 0.0), proposed: (0.0, 0.0), is_drawn_anew: false };
     accepted("kept", &verdict(40_000, SEED, |seed| score(&plan, &mut target, seed).0));
-    // mlt_fresh_noise: expected |z| 47.
+    // mlt_fresh_noise: expected |z| 49.
     target.is_drawn_anew = true;
     rejected("mlt_fresh_noise", &verdict(40_000, SEED, |seed| score(&plan, &mut target, seed).0));
 }

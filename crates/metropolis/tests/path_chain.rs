@@ -51,7 +51,7 @@ fn judged(name: &str, scene: &Scene, mutations: for<'s> fn(&Stage<'s>) -> Vec<Na
     for index in 0..REPLICAS {
         let mut sum = scale;
         let replica = plan.replica(&mut target, (index, derive_seed(SEED, 3)), &mut |pixel, value| {
-            sum += seen(pixel, value)
+            sum += seen(pixel, value);
         });
         for (all, one) in kinds.iter_mut().zip(replica.unwrap().acceptance) {
             all.merge(&one);

@@ -89,6 +89,7 @@ fn the_choice_is_in_the_ratio() {
     let right = judged(false);
     println!("right: {:?}", right.worst());
     assert!(right.agrees_within(0.15), "{:#?}", right.drifts);
+    // Expected |z| 236.
     let twin = judged(true);
     println!("mlt_no_choice_ratio: {:?}", twin.worst());
     assert!(twin.is_rejected() && twin.worst().z.abs() > 8.5, "{:?}", twin.worst());
@@ -148,7 +149,7 @@ impl Target<f64> for Own {
 
 #[test]
 fn a_chain_that_learns_from_itself_is_found() {
-    // mlt_own_adaptation: every chain crosses once, however improbable that is, and stays where it came.
+    // mlt_own_adaptation: every chain crosses once, however improbable that is, and stays where it came. Expected |z| 55.
     let sizes = vec![SmallStep::new(1e-5, 1e-4).unwrap(), SmallStep::new(0.1, 0.5).unwrap()];
     let mut target = Own { sizes, present: 0.0, proposed: 0.0, size: 1, is_start: true };
     let plan = Plan::new(16, 1, 40).unwrap();

@@ -93,6 +93,7 @@ fn twin(name: &str, chains: f64, replicas: u64, how: impl Fn(f64, f64) -> (u64, 
 
 #[test]
 fn another_number_of_chains_is_found() {
+    // Expected |z| 114, 748 and 18.
     let floor = |x: f64| x.floor() as u64;
     twin("erpt_at_least_one", 0.5, 100_000, |expected, u| (floor(u + expected).max(1), 1.0));
     twin("erpt_capped", 2.0, 100_000, |expected, u| (floor(u + expected.min(1.0)), 1.0));

@@ -100,7 +100,7 @@ fn paths_of_changing_length_keep_their_target() {
 
 #[test]
 fn a_factor_for_the_number_of_variates_is_found() {
-    // mlt_counts_variates: each collision more draws two variates, as if of a density of 0.8. Expected |z| 45.
+    // mlt_counts_variates: each collision more draws two variates, as if of a density of 0.8. Expected |z| 33.
     let twin =
         judged(Layout::Rows, (200_000, SEED, 0.0), |x, y| 0.8f64.powf(y.collisions - x.collisions).min(1.0));
     println!("{:?}", twin.worst());

@@ -71,7 +71,7 @@ impl MetropolisPlan {
     /// The steps of a spec, with chains that start like this.
     pub(super) fn build(spec: &StepsSpec, starts: ChainStarts, scene: &InScene<'_>) -> Result<Self, Failure> {
         Ok(Self {
-            paths: BidirectionalPlan::build(&spec.from_both_ends(), scene)?,
+            paths: BidirectionalPlan::build(&spec.joined(), scene)?,
             over: spec.over,
             space: PathSpace::build(spec, scene)?,
             layout: spec.rows,

@@ -98,7 +98,7 @@ struct Reservoir<C> {
 impl<C: Spectrum> Reservoir<C> {
     fn offer(&mut self, found: Found<C>, share: f64, source: &mut dyn UniformSource) {
         let value = found.value.max_channel() * share;
-        debug_assert!(!(value < 0.0), "a contribution of {value} has no density");
+        debug_assert!(value >= 0.0 || value.is_nan(), "a contribution of {value} has no density");
         if value == 0.0 {
             return;
         }

@@ -7,7 +7,7 @@ use fairflight_collision::Version;
 use fairflight_compensation::{Compensation, CompensationOptions, LocalMean};
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, Homogeneous, Line};
-use fairflight_metropolis::{Acceptance, FromCamera, Plan, Primary, Redistribution, Target};
+use fairflight_metropolis::{Acceptance, Plan, Primary, Redistribution, Splats, Target};
 use fairflight_paths::single_scattering::{Sampling, SharedExplorers, SingleScattering, Technique};
 use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{
@@ -57,8 +57,8 @@ const INTEGRATORS: [(&str, Exact, Radiance); 10] = [
     ("vpl", Exact::Vacuum, vpl),
     ("bidirectional", Exact::Vacuum, bidirectional),
     ("beam_radiance", Exact::Vacuum, beam_radiance),
-    ("metropolis", Exact::Vacuum, metropolis),
-    ("energy_redistribution", Exact::Vacuum, energy_redistribution),
+    ("metropolis", Exact::Furnace, metropolis),
+    ("energy_redistribution", Exact::Furnace, energy_redistribution),
 ];
 
 /// Tells whether a kind is an integrator.
@@ -171,16 +171,18 @@ fn bidirectional(ball: &Ball, line: &Line, mut source: &mut dyn UniformSource) -
     integrator.radiance(line, &light, &mut source)
 }
 
-/// Chains of path tracing, by `draw`, which gives what they add to the only pixel.
+/// Chains of path tracing, by `draw`; the sum that they add to the only pixel.
 fn chained(
     ball: &Ball,
     line: &Line,
     draw: impl FnOnce(&mut dyn Target<f64>, &mut dyn FnMut([u32; 2], f64)),
 ) -> f64 {
-    let (volume, lights, camera) = (ball.volume(), lights(), camera(line));
+    let (volume, lights) = (ball.volume(), lights());
     let world = World::new(&volume, &NoSurfaces, &lights);
-    let tracer = PathTracer::new(world, ball.walk(), Ratio(ball.sampling()), Heuristic::Balance);
-    let mut integrand = FromCamera::new(&camera, tracer);
+    let mut tracer = PathTracer::new(world, ball.walk(), Ratio(ball.sampling()), Heuristic::Balance);
+    let mut integrand = |splats: &mut Splats<f64>, mut source: &mut dyn UniformSource| {
+        splats.push([0, 0], tracer.radiance(line, &mut source));
+    };
     let mut sum = 0.0;
     draw(&mut Primary::new(&mut integrand), &mut |_, value| sum += value);
     sum

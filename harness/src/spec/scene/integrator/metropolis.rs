@@ -239,13 +239,13 @@ impl StepsSpec {
     #[must_use]
     pub fn independent(&self) -> IntegratorSpec {
         match self.over {
-            None | Some(Over::Bidirectional | Over::Multiplexed) => self.from_both_ends().into(),
+            None | Some(Over::Bidirectional | Over::Multiplexed) => self.joined().into(),
             Some(Over::PathTracer) => PathTracerSpec::of_all_lengths(self.transport.clone()).into(),
         }
     }
 
     /// Bidirectional path tracing with the same paths.
-    pub(crate) fn from_both_ends(&self) -> BidirectionalSpec {
+    pub(crate) fn joined(&self) -> BidirectionalSpec {
         BidirectionalSpec {
             light_paths_per_pixel: 1,
             thickness: None,
