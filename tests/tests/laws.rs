@@ -18,9 +18,14 @@ fn holds_on(medium: &str) {
     assert!(not_holding.is_empty(), "{not_holding:#?}");
     // Acceptance needs power: a bias of a tenth would have shown in each, of a twentieth where only means are judged; and N a margin over
     // what the shape of the sample asks for, where no closed moments say it.
-    let by_samples = ["paths", "vpl", "bidirectional", "extensions", "points"].contains(&medium);
+    let by_samples =
+        ["paths", "vpl", "bidirectional", "extensions", "metropolis", "points"].contains(&medium);
     // Of two strategies that share the light of one length either sees a part.
-    let most = if by_samples && !["bidirectional", "extensions"].contains(&medium) { 0.05 } else { 0.1 };
+    let most = if by_samples && !["bidirectional", "extensions", "metropolis"].contains(&medium) {
+        0.05
+    } else {
+        0.1
+    };
     for (check, result) in &results {
         let share = result.normal_share.filter(|_| by_samples);
         assert!(share.is_none_or(|share| share < 0.8), "{}: {share:?}", check.id);
@@ -72,6 +77,7 @@ media!(
     vpl,
     bidirectional,
     extensions,
+    metropolis,
     exact,
 );
 

@@ -7,9 +7,7 @@ use crate::extensions::{against_paths, plain};
 use fairflight_bidirectional::{Bidirectional, Exact, Walking};
 use fairflight_laws::{NotFinite, Run};
 use fairflight_media::Homogeneous;
-use fairflight_metropolis::{
-    FromBothEnds, FromCamera, Integrand, Lengths, Multiplexed, Plan, Primary, Redistribution,
-};
+use fairflight_metropolis::{FromBothEnds, FromCamera, Integrand, Plan, Primary, Redistribution};
 use fairflight_paths::Heuristic;
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_stats::Verdict;
@@ -20,7 +18,6 @@ use fairflight_transmittance::Regular;
 pub(crate) enum Over {
     PathTracer,
     Bidirectional,
-    Multiplexed,
 }
 
 /// Does `work` with the integrand.
@@ -33,13 +30,12 @@ fn over<R>(kind: Over, view: &View<Homogeneous>, work: impl FnOnce(&mut dyn Inte
     match kind {
         Over::PathTracer => work(&mut FromCamera::new(&view.camera, plain(view))),
         Over::Bidirectional => work(&mut FromBothEnds::new(joined())),
-        Over::Multiplexed => {
-            // Roughly; the same for every run.
-            let light = FromBothEnds::new(joined()).light_by_length(2000, &mut Seeded::new(0));
-            let lengths = Lengths::new(1, &light, (0.3, 0.7)).expect(LAWFUL);
-            work(&mut Multiplexed::new(joined(), lengths))
-        }
     }
+}
+
+/// The light of one of several pixels: what all of them sum up to is the brightness of the start, and no step changes it.
+fn seen(pixel: [u32; 2], value: f64) -> f64 {
+    if pixel == [0, 0] { value } else { 0.0 }
 }
 
 /// A seed from a stream.
@@ -47,7 +43,7 @@ fn seed(source: &mut Seeded) -> u64 {
     (source.next_uniform() * 9_007_199_254_740_992.0) as u64
 }
 
-/// **Law.** A replica of two independent samples and one chain of three steps, most of them small, less one path is 0 on average: a start-up bias of
+/// **Law.** One pixel of a replica of two independent samples and one chain of three steps, most of them small, less one path is 0 on average: a start-up bias of
 /// such a chain would be that of a chain that has only begun.
 ///
 /// # Errors
@@ -58,14 +54,15 @@ pub(crate) fn replicas(kind: Over, view: &View<Homogeneous>, run: Run) -> Result
         let mut target = Primary::new(integrand).with_large_step(0.2).expect(LAWFUL);
         let replica = |source: &mut Seeded| {
             let mut sum = 0.0;
-            let made = plan.replica(&mut target, (0, seed(source)), &mut |_, value: f64| sum += value);
+            let made = plan
+                .replica(&mut target, (0, seed(source)), &mut |pixel, value: f64| sum += seen(pixel, value));
             made.map_or(f64::NAN, |_| sum)
         };
         against_paths(view, replica, run)
     })
 }
 
-/// **Law.** The energy of one sample, spread by chains of three small steps, less one path is 0 on average, with at most two chains of a sample.
+/// **Law.** One pixel of the energy of one sample, spread by chains of three small steps, less one path is 0 on average, with at most two chains of a sample.
 ///
 /// # Errors
 /// If an estimate is no number.
@@ -76,8 +73,9 @@ pub(crate) fn redistributed(view: &View<Homogeneous>, run: Run) -> Result<Verdic
         let mut target = Primary::new(integrand).with_large_step(0.0).expect(LAWFUL);
         let sample = |source: &mut Seeded| {
             let (mut sum, mut counts) = (0.0, [Default::default(); 2]);
-            let made =
-                rule.sample(&mut target, (0, seed(source)), &mut counts, &mut |_, value: f64| sum += value);
+            let made = rule.sample(&mut target, (0, seed(source)), &mut counts, &mut |pixel, value: f64| {
+                sum += seen(pixel, value)
+            });
             made.map_or(f64::NAN, |_| sum)
         };
         against_paths(view, sample, run)

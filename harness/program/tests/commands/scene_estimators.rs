@@ -18,7 +18,7 @@ struct Place {
     key: &'static str,
 }
 
-const PLACES: [Place; 7] = [
+const PLACES: [Place; 9] = [
     Place { integrator: "transmittance", key: "estimator" },
     Place { integrator: "single_scattering", key: "estimator" },
     Place { integrator: "single_scattering", key: "shadow" },
@@ -26,6 +26,8 @@ const PLACES: [Place; 7] = [
     Place { integrator: "vpl", key: "estimator" },
     Place { integrator: "bidirectional", key: "estimator" },
     Place { integrator: "beam_radiance", key: "estimator" },
+    Place { integrator: "metropolis", key: "estimator" },
+    Place { integrator: "energy_redistribution", key: "estimator" },
 ];
 
 impl Place {
@@ -53,6 +55,7 @@ impl Place {
             "vpl" => 2000,
             "bidirectional" => 600,
             "beam_radiance" => 1200,
+            "metropolis" => 1000,
             _ => 120,
         }
     }
@@ -65,6 +68,11 @@ impl Place {
             }
             "path_tracer" | "bidirectional" => json!({ "max_vertices": 3 }),
             "vpl" => json!({ "light_paths": 4, "clamp": 1 }),
+            // So many replicas that their mean is next to normal.
+            "metropolis" => json!({ "space": "primary", "over": "path_tracer", "replicas": 100 }),
+            "energy_redistribution" => {
+                json!({ "space": "primary", "over": "path_tracer", "replicas": 100, "chain_length": 3 })
+            }
             "beam_radiance" => json!({ "photons": 100, "radius": 0.5, "max_vertices": 3 }),
             other => panic!("{other}"),
         };

@@ -94,7 +94,7 @@ const REASONS: [Reason; 21] = [
         why: "what varies along a line is met by its estimators and by the collisions of single_particle",
     },
     Reason {
-        rows: &[16, 17, 18, 19],
+        rows: &[17, 18, 19],
         kinds: Kinds::These(&["metropolis", "energy_redistribution"]),
         why: "its paths are those of the integrator whose variates it moves, which meets the row itself",
     },
