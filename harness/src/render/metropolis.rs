@@ -150,6 +150,7 @@ impl<C: Spectrum> Draw<'_, C> {
             .replica(target, (index.into(), seed), film)
             .map_err(|refused| Failure::refused(format!("seed {}: {refused}", self.seed)))?;
         Ok(Chains {
+            replicas: 1,
             bootstrap: replica.bootstrap,
             black: replica.is_black.into(),
             steps: target.kinds().iter().copied().zip(replica.acceptance).collect(),
@@ -186,6 +187,7 @@ impl<C: Spectrum> Draw<'_, C> {
             weights.push(made.weight);
         }
         Ok(Chains {
+            replicas: 1,
             black: u32::from(weights.maximum() == Some(0.0)),
             bootstrap: weights,
             steps: target.kinds().iter().copied().zip(acceptance).collect(),

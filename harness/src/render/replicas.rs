@@ -3,10 +3,13 @@
 use super::canvas::{Drawn, MeanVariance, Spent};
 use super::draw::Draw;
 use crate::Failure;
+use crate::result::number;
 use fairflight_metropolis::Acceptance;
 use fairflight_scene::Spectrum;
 use fairflight_stats::Moments;
 use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The streams of replicas are children of this child of the seed: no pixel has its number.
 pub(super) const REPLICA_STREAM: u64 = u64::MAX - 1;
@@ -23,6 +26,8 @@ pub(super) struct Replica<C> {
 /// Chains of one replica or of several.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chains {
+    /// Their number.
+    pub replicas: u32,
     /// Weights of the independent samples that starts were chosen from.
     pub bootstrap: Moments,
     /// Replicas of which no independent sample found light: their images are black, and count as others.
@@ -32,9 +37,23 @@ pub(super) struct Chains {
 }
 
 impl Chains {
+    /// What statistics tell of them.
+    pub(super) fn told(&self) -> ChainStatistics {
+        ChainStatistics {
+            replicas: self.replicas,
+            bootstrap: BootstrapStatistics {
+                b: self.bootstrap.mean(),
+                standard_error: self.bootstrap.standard_error(),
+                black_replicas: self.black,
+            },
+            acceptance: self.steps.iter().map(|(kind, steps)| (*kind, steps.mean())).collect(),
+        }
+    }
+
     fn merge(&mut self, other: &Self) {
         self.bootstrap.merge(&other.bootstrap);
         self.black += other.black;
+        self.replicas += other.replicas;
         for ((_, all), (_, more)) in self.steps.iter_mut().zip(&other.steps) {
             all.merge(more);
         }
@@ -47,6 +66,30 @@ impl Chains {
             all
         })
     }
+}
+
+/// Chains of all replicas.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct ChainStatistics {
+    /// Number of replicas.
+    pub replicas: u32,
+    /// Independent samples before the chains.
+    pub bootstrap: BootstrapStatistics,
+    /// Mean probability of accepting a step, by its kind.
+    pub acceptance: BTreeMap<&'static str, Option<f64>>,
+}
+
+/// Independent samples that chains start from, of all replicas.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct BootstrapStatistics {
+    /// Mean brightness of a sample of the whole image: b, of which each replica uses its own estimate.
+    #[serde(serialize_with = "number")]
+    pub b: Option<f64>,
+    /// Its standard error.
+    #[serde(serialize_with = "number")]
+    pub standard_error: Option<f64>,
+    /// Replicas that found no light, and are black.
+    pub black_replicas: u32,
 }
 
 /// The light of replicas, to be added to what is drawn pixel by pixel.

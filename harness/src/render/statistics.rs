@@ -2,14 +2,13 @@
 
 use super::canvas::{Drawn, Found, MeanVariance, Spent};
 use super::pixel::Pixel;
-use super::replicas::Chains;
+use super::replicas::{ChainStatistics, Chains};
 use crate::estimator::Preparation;
 use crate::image::Image;
 use crate::plan::{IntegratorPlan, ScenePlan, Tally};
 use crate::result::{Provenance, number};
 use fairflight_scene::Spectrum;
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// The statistics of an image, in the form of the published spec.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -132,30 +131,6 @@ pub struct StrategyShare {
     /// Variance of one sample in the mean of its channels, averaged over pixels; null for one sample.
     #[serde(serialize_with = "number")]
     pub variance: Option<f64>,
-}
-
-/// Chains of all replicas.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct ChainStatistics {
-    /// Number of replicas.
-    pub replicas: u32,
-    /// Independent samples before the chains.
-    pub bootstrap: BootstrapStatistics,
-    /// Mean probability of accepting a step, by its kind.
-    pub acceptance: BTreeMap<&'static str, Option<f64>>,
-}
-
-/// Independent samples that chains start from, of all replicas.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct BootstrapStatistics {
-    /// Mean brightness of a sample of the whole image: b, of which each replica uses its own estimate.
-    #[serde(serialize_with = "number")]
-    pub b: Option<f64>,
-    /// Its standard error.
-    #[serde(serialize_with = "number")]
-    pub standard_error: Option<f64>,
-    /// Replicas that found no light, and are black.
-    pub black_replicas: u32,
 }
 
 /// 1/(MSE · cost), null at zero error.
@@ -334,7 +309,7 @@ impl Moments {
             strategies: self.strategies(),
             unseen_power: (self.cost.light_paths > 0)
                 .then(|| self.cost.unseen_power / self.cost.light_paths as f64),
-            chains: self.chain_statistics(plan),
+            chains: self.chains.as_ref().map(Chains::told),
             method: format!(
                 "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}{shared}",
                 prepared(&plan.integrator)
@@ -342,20 +317,6 @@ impl Moments {
             warnings,
             provenance,
         }
-    }
-
-    /// Chains of the replicas; none of an integrator without any.
-    fn chain_statistics(&self, plan: &ScenePlan) -> Option<ChainStatistics> {
-        let Chains { bootstrap, black, steps } = self.chains.as_ref()?;
-        Some(ChainStatistics {
-            replicas: plan.integrator.replicas().map_or(0, |count| count.min(self.samples)),
-            bootstrap: BootstrapStatistics {
-                b: bootstrap.mean(),
-                standard_error: bootstrap.standard_error(),
-                black_replicas: *black,
-            },
-            acceptance: steps.iter().map(|(kind, steps)| (*kind, steps.mean())).collect(),
-        })
     }
 
     /// Light by the strategies that found some.

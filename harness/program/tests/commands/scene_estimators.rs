@@ -55,7 +55,7 @@ impl Place {
             "vpl" => 2000,
             "bidirectional" => 600,
             "beam_radiance" => 1200,
-            "metropolis" => 1000,
+            "metropolis" => 6000,
             _ => 120,
         }
     }
