@@ -74,7 +74,7 @@ pub(crate) fn redistributed(view: &View<Homogeneous>, run: Run) -> Result<Verdic
         let sample = |source: &mut Seeded| {
             let (mut sum, mut counts) = (0.0, [Default::default(); 2]);
             let made = rule.sample(&mut target, (0, seed(source)), &mut counts, &mut |pixel, value: f64| {
-                sum += seen(pixel, value)
+                sum += seen(pixel, value);
             });
             made.map_or(f64::NAN, |_| sum)
         };
