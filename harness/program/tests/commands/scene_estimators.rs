@@ -56,6 +56,7 @@ impl Place {
             "bidirectional" => 600,
             "beam_radiance" => 1200,
             "metropolis" => 6000,
+            "energy_redistribution" => 800,
             _ => 120,
         }
     }
