@@ -26,7 +26,7 @@ pub const REPORTS: [ReportKind; 7] = [
         name: "standard",
         about: "transmittance estimators against their closed forms",
         takes_volume: true,
-        takes: ["36 s", "12 s"],
+        takes: ["31 s", "12 s"],
         study: standard::study,
     },
     ReportKind {
@@ -54,14 +54,14 @@ pub const REPORTS: [ReportKind; 7] = [
         name: "vpl",
         about: "virtual point lights: clamping, strategies of compensation, costs, anisotropy; the beam radiance estimate",
         takes_volume: false,
-        takes: ["4.6 min", "15 s"],
+        takes: ["4.6 min", "13 s"],
         study: |run| Finished::of(virtual_lights::document(run)?),
     },
     ReportKind {
         name: "bidirectional",
         about: "paths joined from both ends: gain over path tracing and its extensions, strategies, a point light, weights",
         takes_volume: false,
-        takes: ["2.3 min", "6 s"],
+        takes: ["2.3 min", "7 s"],
         study: |run| Finished::of(bidirectional::document(run)?),
     },
     ReportKind {

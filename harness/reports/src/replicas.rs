@@ -4,6 +4,7 @@ use super::measured::{Measured, mean_and_error};
 use fairflight_document::{self as document, Pixels};
 use fairflight_harness::Failure;
 use fairflight_harness::field::MediumLibrary;
+use fairflight_harness::parallel::try_in_parallel;
 use fairflight_harness::plan::{ScenePlan, Spectra};
 use fairflight_harness::render::{Moments, StrategyShare, moments};
 use fairflight_harness::spec::{SceneOverrides, SceneSpec};
@@ -88,9 +89,10 @@ impl Subject {
         (seed, replicas): (u64, u32),
         library: &MediumLibrary,
     ) -> Result<Replicas, Failure> {
-        let images = (0..u64::from(replicas.max(2)))
-            .map(|k| self.render(samples_per_pixel, named_seed(seed, &format!("replica {k}")), library))
-            .collect::<Result<Vec<_>, _>>()?;
+        // Small images are a tile or two: side by side they use all cores.
+        let images = try_in_parallel(replicas.max(2) as usize, &|k| {
+            self.render(samples_per_pixel, named_seed(seed, &format!("replica {k}")), library)
+        })?;
         Ok(Replicas { images, samples_per_pixel })
     }
 }
