@@ -41,7 +41,7 @@ pub enum RedistributionError {
     NoChains,
 }
 
-/// What became of one sample.
+/// Weight of one sample, and the number of chains that it started.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Redistributed {
     /// W of the sample.

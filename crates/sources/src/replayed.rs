@@ -48,7 +48,7 @@ pub enum Layout {
 /// Kind of a proposal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// All variates drawn afresh.
+    /// A large step: each variate is drawn afresh.
     Large,
     /// Those that the state has changed a little.
     Small(SmallStep),

@@ -20,7 +20,7 @@ pub(crate) struct Cli {
     /// Progress on standard error
     #[arg(long, value_name = "FORM", global = true, conflicts_with = "quiet", value_enum, default_value_t)]
     pub progress: ProgressForm,
-    /// What to do.
+    /// The subcommand; without one the standard report is written.
     #[command(subcommand)]
     pub command: Option<Command>,
 }

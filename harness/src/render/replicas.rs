@@ -59,7 +59,7 @@ impl Chains {
         }
     }
 
-    /// All of several.
+    /// Sums over the chains of several replicas; `None` without any.
     fn of_all<'c>(chains: impl Iterator<Item = &'c Self>) -> Option<Self> {
         chains.cloned().reduce(|mut all, more| {
             all.merge(&more);
