@@ -17,8 +17,8 @@ use fairflight_stats::Moments;
 /// ```
 ///
 /// by stationarity alone: the chain need not be ergodic, and may be short. What multiplies must come from the very set that the start was
-/// chosen from; a better estimate of b from elsewhere is a bias, most of all where a chain of small steps between two modes starts from
-/// M = 1; as is any other start, and any b that was pooled over chains. Where all W are 0 the score is 0, and that is its value.
+/// chosen from; a better estimate of b from elsewhere is a bias,
+/// as is any other start, and any b that was pooled over chains. Where all W are 0 the score is 0, and that is its value.
 ///
 /// Samples have streams of their own: the one that is chosen is drawn again, and none is stored.
 #[derive(Clone, Debug)]
