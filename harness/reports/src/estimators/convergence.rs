@@ -20,14 +20,17 @@ use fairflight_sources::{Seeded, named_seed};
 use fairflight_transmittance::{CombShape, Hybrid};
 
 /// Independent means per point.
-const REPLICAS: usize = 48;
+fn replicas(run: &Run<'_>) -> usize {
+    run.quick_or(24, 48)
+}
+
 /// Estimates of a mean.
 const SAMPLES: [u64; 6] = [1, 4, 16, 64, 256, 1024];
 /// A progressive majorant begins with this share of the majorant.
 const GUESS: f64 = 0.1;
 
 pub(super) fn steps() -> u64 {
-    2 * 10
+    2 * PLAYERS.len() as u64
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
@@ -38,51 +41,69 @@ pub(super) fn study(run: &Run<'_>) -> Result<Section, Failure> {
     let truth = Truth::of(&profile, Tolerance::TIGHT)?;
     let rough = TestRay { profile, truth, majorant: 1.0 };
     let text = format!(
-        "Root mean squared error over T of means of 1 to {} estimates, over {REPLICAS} independent means each, with 95 % intervals. Unbiased \
+        "Root mean squared error over T of means of 1 to {} estimates, over {} independent means each, with 95 % intervals. Unbiased \
          estimators fall like one over the square root; biased ones stop at their bias; a progressive majorant, which begins at {GUESS} of the \
          majorant, is consistent: it falls all the same. Costs are those of all estimates of a mean together; pilots are not charged.",
-        SAMPLES[SAMPLES.len() - 1]
+        SAMPLES[SAMPLES.len() - 1],
+        replicas(run)
     );
     let smooth = charts(run, ("smooth", "the seed ray", &smooth))?;
     let rough = charts(run, ("rough", "a rough ray", &rough))?;
     Ok(Section::new("convergence", "Error against cost").with(text).with_all(smooth).with_all(rough))
 }
 
-fn players(ray: &TestRay, seed: u64) -> Result<Vec<(&'static str, Prepared)>, Failure> {
-    let build = |spec: EstimatorSpec| spec.kind().prepare(&ray.profile);
-    let depth = ray.majorant * ray.profile.length();
-    let marching = |shape| build(UnbiasedRayMarchingSpec::of(shape, 1).by_the_rule(depth).into());
-    let facts = facts_of(ray, seed);
-    let half = |teeth: u32| (teeth / 2).max(1);
-    let rule = fairflight_transmittance::teeth_for(depth);
-    let telescoping =
-        TelescopingSpec { teeth: depth.round() as u32, level_ratio: 0.65, endpoint_matching: false };
-    let progressive = ProgressiveMajorantSpec { start: GUESS * ray.majorant };
-    Ok(vec![
-        ("hybrid", Prepared::hybrid(&facts.experience, &ray.profile, ray.majorant, Hybrid::USUAL_BUDGET)?),
-        ("unbiased ray marching, matched", marching(CombShape::EndpointMatched)?),
-        ("unbiased ray marching", marching(CombShape::Uniform)?),
-        ("telescoping", build(telescoping.into())?),
-        ("jittered ratio, 0.25", build(JitteredRatioSpec::below(ray.majorant, 0.25).into())?),
-        ("ratio tracking", build(DoubleParticleSpec::at(ray.majorant, ControlSpec::none()).into())?),
-        ("track length", build(WoodcockSpec { majorant: ray.majorant }.into())?),
-        ("jackknife (biased)", build(JackknifeSpec { teeth: half(rule) }.into())?),
-        ("naive (biased)", build(NaiveSpec { teeth: half(rule) }.into())?),
-        ("progressive majorant (biased)", build(progressive.into())?),
-    ])
+/// An estimator for a ray; one that learns takes pilots of this seed.
+type Player = fn(&TestRay, u64) -> Result<Prepared, Failure>;
+
+const PLAYERS: [(&str, Player); 10] = [
+    ("hybrid", |ray, seed| {
+        let experience = facts_of(ray, seed).experience;
+        Prepared::hybrid(&experience, &ray.profile, ray.majorant, Hybrid::USUAL_BUDGET)
+    }),
+    ("unbiased ray marching, matched", |ray, _| marching(ray, CombShape::EndpointMatched)),
+    ("unbiased ray marching", |ray, _| marching(ray, CombShape::Uniform)),
+    ("telescoping", |ray, _| {
+        let teeth = depth(ray).round() as u32;
+        build(ray, TelescopingSpec { teeth, level_ratio: 0.65, endpoint_matching: false })
+    }),
+    ("jittered ratio, 0.25", |ray, _| build(ray, JitteredRatioSpec::below(ray.majorant, 0.25))),
+    ("ratio tracking", |ray, _| build(ray, DoubleParticleSpec::at(ray.majorant, ControlSpec::none()))),
+    ("track length", |ray, _| build(ray, WoodcockSpec { majorant: ray.majorant })),
+    ("jackknife (biased)", |ray, _| build(ray, JackknifeSpec { teeth: half_the_rule(ray) })),
+    ("naive (biased)", |ray, _| build(ray, NaiveSpec { teeth: half_the_rule(ray) })),
+    ("progressive majorant (biased)", |ray, _| {
+        build(ray, ProgressiveMajorantSpec { start: GUESS * ray.majorant })
+    }),
+];
+
+fn build(ray: &TestRay, spec: impl Into<EstimatorSpec>) -> Result<Prepared, Failure> {
+    spec.into().kind().prepare(&ray.profile)
+}
+
+fn marching(ray: &TestRay, shape: CombShape) -> Result<Prepared, Failure> {
+    build(ray, UnbiasedRayMarchingSpec::of(shape, 1).by_the_rule(depth(ray)))
+}
+
+/// The optical thickness of the majorant.
+fn depth(ray: &TestRay) -> f64 {
+    ray.majorant * ray.profile.length()
+}
+
+/// Half of the teeth that unbiased ray marching has, at twice the look-ups per tooth.
+fn half_the_rule(ray: &TestRay) -> u32 {
+    (fairflight_transmittance::teeth_for(depth(ray)) / 2).max(1)
 }
 
 fn charts(run: &Run<'_>, (id, name, ray): (&str, &str, &TestRay)) -> Result<[Chart; 2], Failure> {
-    let facts = run.seed(format_args!("convergence/{id}/facts"));
     let (mut by_lookups, mut by_seconds) = (Vec::new(), Vec::new());
-    for (e, (label, _)) in players(ray, facts)?.into_iter().enumerate() {
+    for (label, player) in PLAYERS {
         let (mut lookups, mut seconds) = (Vec::new(), Vec::new());
         for &samples in &SAMPLES {
             let seed = run.seed(format_args!("convergence/{id}/{label}/{samples}"));
-            let means = try_in_parallel(REPLICAS, &|replica| {
+            let means = try_in_parallel(replicas(run), &|replica| {
                 // An estimator of its own: one that learns begins anew.
                 let seed = named_seed(seed, &format!("replica {replica}"));
-                let (_, estimator) = players(ray, named_seed(seed, "facts"))?.swap_remove(e);
+                let estimator = player(ray, named_seed(seed, "facts"))?;
                 let measured = draw(&ray.profile, &estimator, &ray.truth, (samples, seed, samples), &|_| ())?;
                 let mean = measured.moments.mean().unwrap_or(f64::NAN);
                 let error = (mean * ray.truth.optical_thickness.exp() - 1.0).powi(2);

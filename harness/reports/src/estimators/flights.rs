@@ -26,7 +26,7 @@ pub(super) fn study(run: &Run<'_>, profile: &AnyProfile) -> Result<Part, Failure
     let AnyProfile::AnalyticCosine(ray) = profile else {
         return Err(Failure::refused("profile: the flights are tried on eq. 21"));
     };
-    let flights = run.quick_or(4_000_000, 100_000_000_u64);
+    let flights = run.quick_or(400_000, 100_000_000_u64);
     let mut rows = Vec::new();
     let mut unsound = Vec::new();
     for (name, epsilon, flights) in [

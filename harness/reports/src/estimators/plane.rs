@@ -47,7 +47,7 @@ struct Centres {
 impl Centres {
     /// Transmittances are even in −ln T towards both ends, tightnesses in their logarithm.
     fn of(run: &Run<'_>) -> Self {
-        let (columns, rows) = run.quick_or((6, 4), (16, 10));
+        let (columns, rows) = run.quick_or((3, 2), (16, 10));
         let logit = |x: f64| (x / (1.0 - x)).ln();
         let [low, high] = [logit(0.01), logit(0.99)];
         let along = |i: usize, n: usize| i as f64 / (n - 1) as f64;
@@ -62,6 +62,11 @@ impl Centres {
     fn points(&self) -> usize {
         self.transmittances.len() * self.tightnesses.len()
     }
+}
+
+/// Estimates at a point of the plane.
+fn samples(run: &Run<'_>) -> u64 {
+    run.quick_or(1024, 2048)
 }
 
 /// Who meets the plane: all that need no cells.
@@ -87,7 +92,8 @@ fn point(shape: &Shape, transmittance: f64, tightness: f64) -> Result<TestRay, F
 pub(super) fn study(run: &Run<'_>) -> Result<Plane, Failure> {
     let grid = Centres::of(run);
     let players = players();
-    let effort = Effort { samples: 2048, counted: 512, closed: true };
+    let samples = samples(run);
+    let effort = Effort { samples, counted: samples / 4, closed: true };
     let points: Vec<(usize, f64, f64)> = (0..SHAPES.len())
         .flat_map(|shape| {
             let grid = &grid;
@@ -109,7 +115,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Plane, Failure> {
         };
         players.iter().map(bout).collect::<Result<Vec<Bout>, Failure>>()
     })?;
-    Ok(results(&grid, &players, &bouts))
+    Ok(results(&grid, &players, &bouts, samples))
 }
 
 /// Variance times look-ups, in units of T²; what no variance is told apart from.
@@ -128,7 +134,7 @@ fn panels<T>(grid: &Centres, bouts: &[Vec<Bout>], of: &dyn Fn(&[Bout]) -> Option
     SHAPES.iter().zip(bouts.chunks(grid.points())).map(of_shape).collect()
 }
 
-fn results(grid: &Centres, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
+fn results(grid: &Centres, players: &[Entrant], bouts: &[Vec<Bout>], samples: u64) -> Plane {
     let x = || Axis::linear("transmittance [1]").within(0.0, 1.0);
     let y = || Axis::logarithmic("tightness of the majorant [1]");
     let best =
@@ -164,7 +170,7 @@ fn results(grid: &Centres, players: &[Entrant], bouts: &[Vec<Bout>]) -> Plane {
     let overview = Section::new("plane", "The canonical plane: who wins").with("georgiev-2019 compares estimators on six profiles over a plane: the transmittance, and how tight the majorant is. Each estimator has \
              the parameters that follow from the ray (its majorant, its length); hybrid and self-tuned roulettes know eight pilots of the same ray, \
              from variates of its own."
-                .to_owned()).with("Variances are closed forms where there are any; the others are measured on 2048 samples, and 2048 on every point test the mean.").with(winners).with(table);
+                .to_owned()).with(format!("Variances are closed forms where there are any; the others are measured on {samples} samples, and {samples} on every point test the mean.")).with(winners).with(table);
     let mut prices =
         Section::new("plane-efficiency", "The canonical plane: variance times look-ups of each estimator")
             .folded();

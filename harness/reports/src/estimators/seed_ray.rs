@@ -68,7 +68,7 @@ pub(super) fn steps() -> u64 {
 
 pub(super) fn study(run: &Run<'_>) -> Result<SeedRay, Failure> {
     let ray = ray(run)?;
-    let samples = run.quick_or(60_000, 1_000_000);
+    let samples = run.quick_or(30_000, 1_000_000);
     let effort = Effort { samples, counted: samples.min(1 << 16), closed: true };
     let rows = rows(&ray);
     let bouts: Result<Vec<Bout>, Failure> = rows

@@ -35,11 +35,11 @@ pub(super) fn arenas(run: &Run<'_>) -> Result<Vec<Arena>, Failure> {
 }
 
 fn rays(run: &Run<'_>) -> usize {
-    run.quick_or(12, RAYS)
+    run.quick_or(3, RAYS)
 }
 
 fn effort(run: &Run<'_>, samples: u64, closed: bool) -> Effort {
-    let samples = run.quick_or(samples / 4, samples).max(1024);
+    let samples = run.quick_or(samples / 8, samples).max(1024);
     Effort { samples, counted: samples.min(2048), closed }
 }
 

@@ -177,7 +177,7 @@ fn scaled<const N: usize>(
 fn tinted(run: &Run<'_>, ray: &Ray<Arc<AnalyticCosine>>) -> Result<(Table, Vec<String>), Failure> {
     let coefficients = [1.0, 0.6, 0.25];
     let (field, thickness) = scaled(ray, coefficients)?;
-    let flights = run.quick_or(100_000, 2_000_000);
+    let flights = run.quick_or(50_000, 2_000_000);
     let samplers = all(&field, (thickness, coefficients), (flights, run.seed("spectral/tinted")))?;
     let rows: Vec<_> =
         samplers.iter().flat_map(|(name, scored)| (0..3).map(move |l| (*name, scored, l))).collect();

@@ -94,12 +94,12 @@ pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
             unit * jittered.estimate(&field, &mut source)
         }),
     ];
+    let replicas = run.quick_or(REPLICAS / 8, REPLICAS);
     let text = format!(
         "The seed ray again. A replica is one randomised point set of n points, one estimate per point; each estimate is unbiased by itself, and \
-         the variance of their mean is measured over {REPLICAS} replicas: never over the points of one, which depend on each other. The \
+         the variance of their mean is measured over {replicas} replicas: never over the points of one, which depend on each other. The \
          sets order the first {DIMENSIONS} variates of an estimate; what it draws beyond is independent."
     );
-    let replicas = run.quick_or(REPLICAS / 8, REPLICAS);
     let (mut rows, mut charts) = (Vec::new(), Vec::new());
     for (id, name, estimate) in estimates {
         let measure = |source: &Source| -> Result<Vec<Row>, Failure> {
@@ -145,7 +145,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Part, Failure> {
         [
             "variates-variance",
             "Variance of a mean of n over that of independent variates",
-            "With the 95 % interval of a ratio of two variances of as many replicas (normal replicas: a factor of 1.28 either way).",
+            "With the 95 % interval of a ratio of two variances of as many replicas.",
         ],
         rows,
         &[
