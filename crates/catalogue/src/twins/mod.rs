@@ -5,6 +5,7 @@
 
 mod bidirectional;
 mod exactly;
+mod extensions;
 mod freeflight;
 mod jittered_flight;
 mod paths;
@@ -137,6 +138,7 @@ impl Twin {
 #[must_use]
 pub fn twins() -> Vec<Twin> {
     joined!(
-        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, vpl, bidirectional
+        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, extensions, vpl,
+        bidirectional
     )
 }
