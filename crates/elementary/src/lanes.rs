@@ -5,6 +5,12 @@
 
 use crate::sine;
 
+/// Lanes that walks run in: four registers of 256 bits, so that latencies of one are hidden behind the others.
+pub const LANES: usize = 16;
+
+/// A number in each lane.
+pub type Lanes = [f64; LANES];
+
 pub use crate::functions::of_lanes::{exp, exp_m1, ln, ln_1p};
 
 /// Sines and cosines of the lanes.
