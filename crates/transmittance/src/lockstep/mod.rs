@@ -7,7 +7,7 @@ mod products;
 mod tracking;
 
 use crate::TransmittanceEstimator;
-use fairflight_elementary::lanes::LANES;
+use fairflight_elementary::lanes::{LANES, Lanes};
 use fairflight_media::Extinction;
 use fairflight_sources::SeededLanes;
 
@@ -19,17 +19,21 @@ pub trait Lockstep<F: Extinction>: TransmittanceEstimator<F> {
     /// Fills a slice of estimates from the stream of each lane; slices may differ in length, and be empty.
     ///
     /// Has to be inlined into a function of the instruction set that it shall use: [`fill`].
-    fn fill(&self, field: &F, source: &mut SeededLanes, estimates: &mut [&mut [f64]; LANES]);
+    /// Returns the look-ups of each lane.
+    fn fill(&self, field: &F, source: &mut SeededLanes, estimates: &mut [&mut [f64]; LANES]) -> [u64; LANES];
+
+    /// True where [`admits`](TransmittanceEstimator::admits) holds in all lanes; where it holds in all, it may be false.
+    fn admits_lanes(&self, field: &F, s: &Lanes, sigma_t: &Lanes) -> bool;
 }
 
-/// Fills a slice of estimates from the stream of each seed, by the best instruction set that the machine has: the same bits on all.
+/// Fills a slice of estimates from the stream of each seed, by the best instruction set that the machine has: the same bits on all. Returns the look-ups of each.
 pub fn fill<F: Extinction, E: Lockstep<F>>(
     estimator: &E,
     field: &F,
     seeds: [u64; LANES],
     estimates: &mut [&mut [f64]; LANES],
-) {
-    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, estimates });
+) -> [u64; LANES] {
+    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, estimates })
 }
 
 /// Work of [`fill`], as the dispatcher takes it.
@@ -41,11 +45,11 @@ struct Fill<'a, 'b, F, E> {
 }
 
 impl<F: Extinction, E: Lockstep<F>> pulp::WithSimd for Fill<'_, '_, F, E> {
-    type Output = ();
+    type Output = [u64; LANES];
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        self.estimator.fill(self.field, &mut SeededLanes::new(self.seeds), self.estimates);
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> [u64; LANES] {
+        self.estimator.fill(self.field, &mut SeededLanes::new(self.seeds), self.estimates)
     }
 }
 

@@ -4,9 +4,11 @@ use super::*;
 use crate::Tracking;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
-    Constant, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseLinear, Vacuum,
+    AnalyticCosine, Clip, Constant, Counted, Extinction, InvertOpticalThickness, Line, OpticalThickness,
+    PiecewiseLinear, Ray, Vacuum,
 };
 use fairflight_sources::Seeded;
+use glam::{DVec3, dvec3};
 
 const SEEDS: [u64; LANES] = [3, 1, 4, 15, 9, 2, 6, 5, 35, 8, 97, 93, 23, 84, 62, 64];
 
@@ -17,26 +19,32 @@ fn lengths() -> [usize; LANES] {
     std::array::from_fn(|lane| lane * 37 % 200)
 }
 
-fn one_after_the_other<F: Extinction, E: TransmittanceEstimator<F>>(
+fn one_after_the_other<F: Extinction, E: for<'a> TransmittanceEstimator<Counted<&'a F>>>(
     estimator: &E,
     field: &F,
-) -> Vec<Vec<u64>> {
+) -> Vec<(Vec<u64>, u64)> {
     let of_lane = |(&seed, length)| {
-        let mut source = Seeded::new(seed);
-        (0..length).map(|_| estimator.estimate(field, &mut source).to_bits()).collect()
+        let (mut source, counted) = (Seeded::new(seed), Counted::new(field));
+        let estimates = (0..length).map(|_| estimator.estimate(&counted, &mut source).to_bits()).collect();
+        (estimates, counted.lookups())
     };
     SEEDS.iter().zip(lengths()).map(of_lane).collect()
 }
 
-/// Bits of the estimates that `fill` makes.
-fn bits(fill: impl FnOnce(&mut Slices<'_>)) -> Vec<Vec<u64>> {
+/// Bits of the estimates that `fill` makes, and the look-ups that it tells.
+fn bits(fill: impl FnOnce(&mut Slices<'_>) -> [u64; LANES]) -> Vec<(Vec<u64>, u64)> {
     let mut estimates = lengths().map(|length| vec![f64::NAN; length]);
-    fill(&mut estimates.each_mut().map(Vec::as_mut_slice));
-    estimates.iter().map(|lane| lane.iter().map(|estimate| estimate.to_bits()).collect()).collect()
+    let lookups = fill(&mut estimates.each_mut().map(Vec::as_mut_slice));
+    let bits = estimates.iter().map(|lane| lane.iter().map(|estimate| estimate.to_bits()).collect());
+    bits.zip(lookups).collect()
 }
 
 /// Holds `estimator` in lanes to be what it is one walk after the other.
-fn is_the_same<F: Extinction, E: Lockstep<F>>(name: &str, estimator: &E, field: &F) {
+fn is_the_same<F: Extinction, E: Lockstep<F> + for<'a> TransmittanceEstimator<Counted<&'a F>>>(
+    name: &str,
+    estimator: &E,
+    field: &F,
+) {
     let expected = one_after_the_other(estimator, field);
     let plain = bits(|estimates| estimator.fill(field, &mut SeededLanes::new(SEEDS), estimates));
     assert_eq!(plain, expected, "{name}: the common instruction set");
@@ -81,6 +89,21 @@ fn tracking_is_that_of_one_walk() {
             &constant(1.0),
         );
     }
+    let ray = |origin: DVec3, direction: DVec3| {
+        let line = Line { origin, direction: direction.normalize() };
+        Ray::new(AnalyticCosine::new(1.0).unwrap(), &Clip { line, length, entry_distance: 0.0 })
+    };
+    is_the_same(
+        "eq. 21",
+        &tracking(Vacuum::new(length), constant(0.7)),
+        &ray(dvec3(1.0, 2.0, 3.0), dvec3(0.2, -0.5, 0.9)),
+    );
+    // Beyond the common range of sine and cosine.
+    is_the_same(
+        "far away",
+        &tracking(Vacuum::new(length), constant(0.7)),
+        &ray(1e6 * DVec3::ONE, dvec3(1.0, 1.0, 0.3)),
+    );
     // Products beyond the range of double precision, and a dense medium.
     is_the_same("negative extinction", &tracking(constant(500.0), constant(20.0)), &constant(-90.0));
     is_the_same("seldom", &tracking(Vacuum::new(length), constant(0.0)), &constant(0.0));
