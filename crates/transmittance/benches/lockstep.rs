@@ -30,7 +30,7 @@ fn tracking(criterion: &mut Criterion) {
         });
     });
     let mut estimates = vec![[0.0; ESTIMATES]; LANES];
-    let mut slices = estimates.iter_mut().map(|lane| lane.as_mut_slice());
+    let mut slices = estimates.iter_mut().map(<[f64; ESTIMATES]>::as_mut_slice);
     let mut slices: [&mut [f64]; LANES] = std::array::from_fn(|_| slices.next().unwrap());
     group.bench_function("in lanes", |bencher| {
         bencher.iter(|| lockstep::fill(&estimator, &field, seeds, &mut slices));
