@@ -16,10 +16,11 @@ fn fairflight_dependencies(manifest: &Path) -> Vec<String> {
 }
 
 /// Dependency direction (docs/ARCHITECTURE.md): what a crate names directly; what that reaches is allowed too.
-const ARROWS: [(&str, &[&str]); 16] = [
-    ("sources", &[]),
+const ARROWS: [(&str, &[&str]); 17] = [
+    ("elementary", &[]),
+    ("sources", &["elementary"]),
     ("stats", &[]),
-    ("media", &[]),
+    ("media", &["elementary"]),
     ("volumes", &[]),
     ("collision", &["sources", "media"]),
     ("transmittance", &["collision"]),

@@ -3,6 +3,7 @@
 use crate::{
     Breakpoints, Extinction, FieldError, InvertOpticalThickness, Majorant, Minorant, OpticalThickness,
 };
+use fairflight_elementary::lanes::{LANES, Lanes};
 
 /// σ_t(s) = σ_t. As a profile, a control, or a sampling extinction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +62,15 @@ impl InvertOpticalThickness for Constant {
         // For sigma_t = 0 this is infinite, or NaN where depth = 0: both fail the comparison, and the flight escapes.
         let s = from + depth * self.mean_free_path;
         (s < self.length).then_some(s)
+    }
+    #[inline(always)]
+    fn invert_lanes(&self, from: &Lanes, depth: &Lanes) -> Lanes {
+        let mut distances = [0.0; LANES];
+        for i in 0..LANES {
+            let s = from[i] + depth[i] * self.mean_free_path;
+            distances[i] = if s < self.length { s } else { f64::INFINITY };
+        }
+        distances
     }
 }
 

@@ -1,5 +1,7 @@
 //! The traits of a field along a ray: the look-up, and each piece of further knowledge by itself.
 
+use fairflight_elementary::lanes::Lanes;
+
 /// Extinction along a ray.
 ///
 /// **Law.** `sigma_t(s)` is a function: the same `s` gives the same value. It may be negative (szirmay-kalos-2017
@@ -7,6 +9,14 @@
 pub trait Extinction {
     /// σ_t at the distance `s` from the start of the profile, `0 ≤ s ≤ length` \[1/length\].
     fn sigma_t(&self, s: f64) -> f64;
+
+    /// σ_t at the distances of all lanes, each with the bits of [`sigma_t`](Self::sigma_t).
+    ///
+    /// A field whose look-up has branches or calls does better than this loop over it.
+    #[inline(always)]
+    fn sigma_t_lanes(&self, s: &Lanes) -> Lanes {
+        s.map(|s| self.sigma_t(s))
+    }
 
     /// The length of the profile \[length\]: finite, and 0 for a ray that misses its medium.
     fn length(&self) -> f64;
@@ -37,6 +47,12 @@ pub trait InvertOpticalThickness: OpticalThickness {
     /// The distance `s ≥ from` with `optical_thickness(from, s) = depth`, or `None` where the profile ends before that
     /// depth is reached. Where a whole stretch without extinction has that depth, its end: there matter begins.
     fn invert(&self, from: f64, depth: f64) -> Option<f64>;
+
+    /// The same in all lanes, ∞ for none.
+    #[inline(always)]
+    fn invert_lanes(&self, from: &Lanes, depth: &Lanes) -> Lanes {
+        std::array::from_fn(|lane| self.invert(from[lane], depth[lane]).unwrap_or(f64::INFINITY))
+    }
 }
 
 /// A field that says where it is not smooth.
@@ -95,6 +111,10 @@ impl<F: Extinction + ?Sized> Extinction for &F {
     fn sigma_t(&self, s: f64) -> f64 {
         (**self).sigma_t(s)
     }
+    #[inline(always)]
+    fn sigma_t_lanes(&self, s: &Lanes) -> Lanes {
+        (**self).sigma_t_lanes(s)
+    }
     #[inline]
     fn length(&self) -> f64 {
         (**self).length()
@@ -125,6 +145,10 @@ impl<F: InvertOpticalThickness + ?Sized> InvertOpticalThickness for &F {
     #[inline]
     fn invert(&self, from: f64, depth: f64) -> Option<f64> {
         (**self).invert(from, depth)
+    }
+    #[inline(always)]
+    fn invert_lanes(&self, from: &Lanes, depth: &Lanes) -> Lanes {
+        (**self).invert_lanes(from, depth)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Fields in space, before a ray is chosen.
 
+use fairflight_elementary::lanes::Lanes;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -36,6 +37,12 @@ pub trait Medium {
 
     /// σ_t at a point in the medium's own coordinates \[1/length\].
     fn sigma_t_local(&self, point: DVec3) -> f64;
+
+    /// σ_t at the points of all lanes, given by their coordinates: each with the bits of [`sigma_t_local`](Self::sigma_t_local).
+    #[inline(always)]
+    fn sigma_t_local_lanes(&self, [x, y, z]: &[Lanes; 3]) -> Lanes {
+        std::array::from_fn(|lane| self.sigma_t_local(DVec3::new(x[lane], y[lane], z[lane])))
+    }
 
     /// σ_t at a point in world space \[1/length\].
     fn sigma_t(&self, point: DVec3) -> f64 {
@@ -74,6 +81,10 @@ macro_rules! behind_a_pointer {
             #[inline]
             fn sigma_t_local(&self, point: DVec3) -> f64 {
                 (**self).sigma_t_local(point)
+            }
+            #[inline(always)]
+            fn sigma_t_local_lanes(&self, points: &[Lanes; 3]) -> Lanes {
+                (**self).sigma_t_local_lanes(points)
             }
             fn upper_bound(&self) -> Option<f64> {
                 (**self).upper_bound()

@@ -4,6 +4,7 @@ use crate::{
     Breakpoints, Clip, Extinction, Line, LineThickness, Majorant, Medium, MediumBreakpoints, Minorant,
     OpticalThickness,
 };
+use fairflight_elementary::lanes::{LANES, Lanes};
 use glam::DVec3;
 
 /// The part of a ray inside the bounds of a medium: s = 0 is where the ray enters.
@@ -56,6 +57,17 @@ impl<M: Medium> Extinction for Ray<M> {
     #[inline]
     fn sigma_t(&self, s: f64) -> f64 {
         self.medium.sigma_t_local(self.local.at(s))
+    }
+    #[inline(always)]
+    fn sigma_t_lanes(&self, s: &Lanes) -> Lanes {
+        let Line { origin, direction } = self.local;
+        let mut points = [[0.0; LANES]; 3];
+        for (axis, coordinates) in points.iter_mut().enumerate() {
+            for (coordinate, s) in coordinates.iter_mut().zip(s) {
+                *coordinate = origin[axis] + s * direction[axis];
+            }
+        }
+        self.medium.sigma_t_local_lanes(&points)
     }
     #[inline]
     fn length(&self) -> f64 {

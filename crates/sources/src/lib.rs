@@ -22,6 +22,7 @@
 //! ```
 
 mod counting;
+mod lanes;
 pub mod points;
 mod replayed;
 mod row;
@@ -30,6 +31,7 @@ mod seeded;
 mod small_step;
 
 pub use counting::Counting;
+pub use lanes::SeededLanes;
 pub use points::{Halton, Hammersley, LatinHypercube, PointSet, PointSetError, PointSource, Sobol};
 pub use replayed::{Layout, Replayed, Step, Variates};
 pub use row::{PathEnd, Purpose, Row};
@@ -60,7 +62,7 @@ pub trait UniformSource {
     /// raab-2008 algorithm 1 is not).
     #[inline]
     fn next_exponential(&mut self) -> f64 {
-        -(1.0 - self.next_uniform()).ln()
+        -fairflight_elementary::ln(1.0 - self.next_uniform())
     }
 
     /// Turns to a row: what is drawn from here on belongs to it.

@@ -54,6 +54,7 @@ mod hybrid;
 mod jittered_law;
 mod jittered_ratio;
 mod line_integral;
+pub mod lockstep;
 mod next_flight;
 mod p_series;
 mod product_law;

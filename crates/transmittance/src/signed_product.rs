@@ -1,5 +1,7 @@
 //! Products of very many factors and sums of such, without under- or overflow.
 
+use fairflight_elementary as elementary;
+
 /// A product, or a sum of products, kept as mantissa · 2^(128 · scale).
 ///
 /// A walk of a million collisions multiplies a million weights; as a plain double the product is 0 or infinite long before
@@ -8,8 +10,8 @@
 /// rounds as that on plain doubles does where those neither over- nor underflow: the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignedProduct {
-    mantissa: f64,
-    scale: i64,
+    pub(crate) mantissa: f64,
+    pub(crate) scale: i64,
 }
 
 const STEP: i32 = 128;
@@ -34,7 +36,7 @@ impl SignedProduct {
     pub fn exp(exponent: f64) -> Self {
         let scale = (exponent / (f64::from(STEP) * std::f64::consts::LN_2)).round();
         let rest = exponent - scale * f64::from(STEP) * std::f64::consts::LN_2;
-        Self { mantissa: rest.exp(), scale: scale as i64 }
+        Self { mantissa: elementary::exp(rest), scale: scale as i64 }
     }
 
     /// Quotient of this product over another, rounded once: 0 or infinite only where the quotient is. The other must not be 0.
@@ -59,11 +61,17 @@ impl SignedProduct {
         self.over(&Self::ONE)
     }
 
+    /// True of a mantissa within its range.
+    #[inline(always)]
+    pub(crate) fn keeps_scale(mantissa: f64) -> bool {
+        (SMALL..=LARGE).contains(&mantissa.abs())
+    }
+
     /// Multiplies by a number.
     #[inline]
     pub fn multiply(&mut self, factor: f64) {
         let product = self.mantissa * factor;
-        if (SMALL..=LARGE).contains(&product.abs()) {
+        if Self::keeps_scale(product) {
             self.mantissa = product;
         } else {
             self.multiply_far(factor);
@@ -140,9 +148,9 @@ impl SignedProduct {
     #[must_use]
     pub fn times_exp(&self, exponent: f64) -> f64 {
         if self.scale == 0 && exponent.abs() < 500.0 {
-            return self.mantissa * exponent.exp();
+            return self.mantissa * elementary::exp(exponent);
         }
-        self.sign() * (self.ln_abs() + exponent).exp()
+        self.sign() * elementary::exp(self.ln_abs() + exponent)
     }
 
     /// −1, 0 or 1; NaN for NaN.
@@ -155,7 +163,7 @@ impl SignedProduct {
     #[must_use]
     pub fn ln_abs(&self) -> f64 {
         let scale = self.scale as f64 * f64::from(STEP) * std::f64::consts::LN_2;
-        self.mantissa.abs().ln() + scale
+        elementary::ln(self.mantissa.abs()) + scale
     }
 }
 

@@ -69,6 +69,12 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
         (self.sampling.sigma_t(s) > 0.0).then(|| self.ratio(s, sigma_t))
     }
 
+    /// The estimate of a walk of this weight: that and the control's own transmittance.
+    #[inline]
+    pub(crate) fn behind_control(&self, weight: &SignedProduct) -> f64 {
+        weight.times_exp(-self.main_thickness)
+    }
+
     /// r = σ_diff / σ_samp at `s` (eq. 5, 6).
     #[inline]
     fn ratio(&self, s: f64, sigma_t: f64) -> f64 {
@@ -106,10 +112,7 @@ impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThic
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         debug_assert_eq!(field.length(), self.sampling.length(), "prepared for another profile");
-        match self.walk(field, source, |_, _, _| {}) {
-            Some(weight) => weight.times_exp(-self.main_thickness),
-            None => 0.0,
-        }
+        self.walk(field, source, |_, _, _| {}).map_or(0.0, |weight| self.behind_control(&weight))
     }
 
     #[inline]

@@ -40,9 +40,12 @@ impl EstimatorKind for DoubleParticleSpec {
         let tracking = tracking(model(), &self.sigma_samp, &self.control, profile)?;
         let variance = "variance: szirmay-kalos-2017 eq. 16, integrated over the ray";
         let trial = match (tracking.control(), tracking.sampling()) {
-            // The usual case: no branch at each look-up.
+            // The usual cases: no branch at each look-up, and lanes.
             (AnyControl::None(none), AnySampling::Constant(rate)) => {
-                profile.trial(Tracking::new(model(), *none, *rate))
+                profile.trial_in_lanes(Tracking::new(model(), *none, *rate))
+            }
+            (AnyControl::Constant(control), AnySampling::Constant(rate)) => {
+                profile.trial_in_lanes(Tracking::new(model(), *control, *rate))
             }
             _ => profile.trial(tracking.clone()),
         };

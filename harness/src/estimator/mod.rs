@@ -31,6 +31,7 @@ mod telescoping;
 mod tracking;
 mod trial;
 mod unbiased_ray_marching;
+mod watched_lanes;
 mod woodcock;
 
 pub use adaptive_ratio::AdaptiveRatioSpec;
@@ -60,6 +61,7 @@ pub use single_particle::{SingleParticleSpec, VersionWord};
 pub use telescoping::TelescopingSpec;
 pub use trial::{AnyPieces, Estimator, Lawful, On, Trial};
 pub use unbiased_ray_marching::{CombWord, RouletteSpec, UnbiasedRayMarchingSpec};
+pub use watched_lanes::WatchedLanes;
 pub use woodcock::WoodcockSpec;
 
 use crate::field::AnyProfile;

@@ -1,8 +1,11 @@
 //! An estimator on a profile: the seam between the crates and the harness.
 
+use super::watched_lanes::WatchedLanes;
 use crate::field::{Field, KnownField};
+use fairflight_elementary::lanes::LANES;
 use fairflight_media::{Breakpoints, Counted, Domain, RayQuadrature, Tolerance, Violation, Watched};
 use fairflight_sources::Seeded;
+use fairflight_transmittance::lockstep::{self, Lockstep};
 use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -14,6 +17,17 @@ pub trait Trial: Debug + Send + Sync {
     /// # Errors
     /// If a look-up is not finite, exceeds the majorant that the profile declares, or is not admitted by the estimator.
     fn draw(&self, source: &mut Seeded, estimates: &mut [f64]) -> Result<(), Violation>;
+
+    /// True if estimates can be drawn [in lanes](Self::draw_lanes).
+    fn runs_in_lanes(&self) -> bool {
+        false
+    }
+
+    /// Fills the estimates of several streams side by side, each with the bits of [`draw`](Self::draw) from [`Seeded::new`] of its seed; returns the
+    /// look-ups of each. `None` where a look-up may not have been lawful: one stream after the other tells which.
+    fn draw_lanes(&self, _seeds: [u64; LANES], _estimates: &mut [&mut [f64]; LANES]) -> Option<[u64; LANES]> {
+        None
+    }
 
     /// Look-ups of so many estimates from the same stream.
     fn count(&self, source: &mut Seeded, estimates: u64) -> u64;
@@ -64,12 +78,17 @@ impl<G: Field, E: TransmittanceEstimator<G>> Domain for Lawful<G, E> {
     }
 }
 
+/// Function that draws in lanes.
+type Fill<T> = fn(&T, [u64; LANES], &mut [&mut [f64]; LANES]) -> Option<[u64; LANES]>;
+
 /// An estimator of one type on a field of one type.
 #[derive(Debug)]
 pub struct On<F, E> {
     field: F,
     estimator: E,
     upper_bound: f64,
+    /// The same in lanes, of an estimator that runs in some.
+    fill: Option<Fill<Self>>,
 }
 
 impl<F: KnownField + Debug + Send, E: Debug + Send + Sync + for<'a> ClosedForm<AnyPieces<'a>>> Trial
@@ -83,6 +102,14 @@ where
         let watched = Watched::new(&self.field, self.lawful());
         estimates.iter_mut().for_each(|estimate| *estimate = estimator.estimate(&watched, source));
         watched.violation().map_or(Ok(()), Err)
+    }
+
+    fn runs_in_lanes(&self) -> bool {
+        self.fill.is_some()
+    }
+
+    fn draw_lanes(&self, seeds: [u64; LANES], estimates: &mut [&mut [f64]; LANES]) -> Option<[u64; LANES]> {
+        self.fill.and_then(|fill| fill(self, seeds, estimates))
     }
 
     fn count(&self, source: &mut Seeded, estimates: u64) -> u64 {
@@ -110,8 +137,30 @@ impl<F, E> On<F, E> {
         F: KnownField,
         Self: Trial + 'static,
     {
+        Arc::new(Self::new(field, estimator))
+    }
+
+    /// The same of an estimator that runs in lanes.
+    pub fn trial_in_lanes(field: F, estimator: E) -> Arc<dyn Trial>
+    where
+        F: KnownField,
+        E: Lockstep<F> + for<'a> Lockstep<WatchedLanes<'a, F, E>>,
+        Self: Trial + 'static,
+    {
+        let fill: Fill<Self> = |trial, seeds, estimates| {
+            let watched = WatchedLanes::new(&trial.field, &trial.estimator, trial.upper_bound);
+            let lookups = lockstep::fill(&trial.estimator, &watched, seeds, estimates);
+            watched.all_lawful().then_some(lookups)
+        };
+        Arc::new(Self { fill: Some(fill), ..Self::new(field, estimator) })
+    }
+
+    fn new(field: F, estimator: E) -> Self
+    where
+        F: KnownField,
+    {
         let upper_bound = field.knowledge().upper_bound.unwrap_or(f64::INFINITY);
-        Arc::new(Self { field, estimator, upper_bound })
+        Self { field, estimator, upper_bound, fill: None }
     }
 
     fn lawful(&self) -> Lawful<&F, &E> {

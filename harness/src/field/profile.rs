@@ -3,11 +3,12 @@
 use super::known::ErasedField;
 use super::{AnyMedium, KnownField, VoxelLattice, refused};
 use crate::Failure;
-use crate::estimator::{On, Trial};
+use crate::estimator::{On, Trial, WatchedLanes};
 use fairflight_media::{
     AnalyticCosine, Certified, Clip, Constant, ExpressionMedium, ExpressionProfile, Homogeneous, Perlin,
     PiecewiseConstant, PiecewiseLinear, Ray, Voxels,
 };
+use fairflight_transmittance::lockstep::Lockstep;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -32,6 +33,16 @@ macro_rules! profiles {
                 $(On<$Field, E>: Trial),+
             {
                 match self { $(Self::$Variant(field) => On::trial(field.clone(), estimator)),+ }
+            }
+
+            /// The same of an estimator that runs in lanes.
+            pub fn trial_in_lanes<E>(&self, estimator: E) -> Arc<dyn Trial>
+            where
+                E: 'static,
+                $(E: Lockstep<$Field> + for<'a> Lockstep<WatchedLanes<'a, $Field, E>>,)+
+                $(On<$Field, E>: Trial),+
+            {
+                match self { $(Self::$Variant(field) => On::trial_in_lanes(field.clone(), estimator)),+ }
             }
 
             /// An estimator on this profile, compiled once for all types of fields: a look-up is then an indirect call, which

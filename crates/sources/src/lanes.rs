@@ -1,0 +1,106 @@
+//! Several seeded streams side by side, one a lane.
+
+use fairflight_elementary::lanes::{LANES, Lanes, ln};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+/// xoshiro256++ in lanes, each a stream of its own seed.
+///
+/// **Law.** Lane i hands out, bit for bit, the variates of [`Seeded::new`](crate::Seeded::new) of the i-th seed: what is computed lane by lane from them is what one
+/// walk after the other computes.
+///
+/// The words of the states lie lane beside lane, so that a step of all of them is a few vector instructions.
+#[derive(Clone, Debug)]
+pub struct SeededLanes {
+    words: [[u64; LANES]; 4],
+}
+
+impl SeededLanes {
+    /// The streams of these seeds.
+    #[must_use]
+    pub fn new(seeds: [u64; LANES]) -> Self {
+        let mut words = [[0; LANES]; 4];
+        for (lane, seed) in seeds.into_iter().enumerate() {
+            // As `Seeded` fills its state.
+            let mut filler = SplitMix64::seed_from_u64(seed);
+            words.iter_mut().for_each(|word| word[lane] = filler.next_u64());
+        }
+        Self { words }
+    }
+
+    /// The next variate of every lane, each a multiple of 2^−53 in \[0, 1).
+    #[inline(always)]
+    pub fn next_uniforms(&mut self) -> Lanes {
+        let mut variates = [0.0; LANES];
+        let [a, b, c, d] = &mut self.words;
+        for i in 0..LANES {
+            let sum = a[i].wrapping_add(d[i]).rotate_left(23).wrapping_add(a[i]);
+            variates[i] = on_lattice(sum);
+            let shifted = b[i] << 17;
+            c[i] ^= a[i];
+            d[i] ^= b[i];
+            b[i] ^= c[i];
+            a[i] ^= d[i];
+            c[i] ^= shifted;
+            d[i] = d[i].rotate_left(45);
+        }
+        variates
+    }
+
+    /// The next exponential variate of every lane, of rate 1.
+    #[inline(always)]
+    pub fn next_exponentials(&mut self) -> Lanes {
+        let uniforms = self.next_uniforms();
+        let mut rests = [0.0; LANES];
+        for i in 0..LANES {
+            rests[i] = 1.0 - uniforms[i];
+        }
+        let mut variates = ln(&rests);
+        for variate in &mut variates {
+            *variate = -*variate;
+        }
+        variates
+    }
+}
+
+/// The 53 high bits of a word, as a multiple of 2^−53.
+///
+/// Their upper 21 and lower 32 bits become numbers by the bits of 2^84 and 2^52 in front of them, whose sum is exact: few instruction sets convert
+/// integers of 64 bits.
+#[inline(always)]
+fn on_lattice(word: u64) -> f64 {
+    const LOW: f64 = 4_503_599_627_370_496.0;
+    const HIGH: f64 = 19_342_813_113_834_066_795_298_816.0;
+    let k = word >> 11;
+    let low = f64::from_bits(LOW.to_bits() | (k & 0xFFFF_FFFF)) - LOW;
+    let high = f64::from_bits(HIGH.to_bits() | (k >> 32)) - HIGH;
+    (high + low) * (1.0 / (1_u64 << 53) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Seeded, UniformSource};
+
+    #[test]
+    fn lanes_are_seeded_streams() {
+        let seeds = std::array::from_fn(|lane| if lane == 3 { u64::MAX } else { lane as u64 });
+        let mut lanes = SeededLanes::new(seeds);
+        let mut streams = seeds.map(Seeded::new);
+        for k in 0..1000 {
+            let (found, expected) = if k % 3 == 0 {
+                (lanes.next_exponentials(), streams.each_mut().map(UniformSource::next_exponential))
+            } else {
+                (lanes.next_uniforms(), streams.each_mut().map(UniformSource::next_uniform))
+            };
+            assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits));
+        }
+    }
+
+    #[test]
+    fn words_become_multiples_of_the_lattice() {
+        for word in [0, 1 << 11, u64::MAX, 0xDEAD_BEEF_1234_5678] {
+            assert_eq!(on_lattice(word), (word >> 11) as f64 / (1_u64 << 53) as f64);
+        }
+    }
+}
