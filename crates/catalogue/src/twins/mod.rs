@@ -7,6 +7,7 @@ mod bidirectional;
 mod exactly;
 mod freeflight;
 mod jittered_flight;
+mod metropolis;
 mod paths;
 mod phase;
 mod points;
@@ -137,6 +138,6 @@ impl Twin {
 #[must_use]
 pub fn twins() -> Vec<Twin> {
     joined!(
-        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, vpl, bidirectional
+        twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, vpl, bidirectional, metropolis
     )
 }
