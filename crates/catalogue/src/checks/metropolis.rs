@@ -26,16 +26,16 @@ fn four_pixels() -> View<Homogeneous> {
 /// Checks of replicas over path tracing from one end and from both, of chains that were taught, of chains of paths, and of energy redistribution. One strategy
 /// per sample has tails that no affordable N tests: its means are the crate's own tests.
 pub(super) fn checks() -> Vec<Check> {
-    let chains = |name, kinds: &[&'static str], how| {
-        unbiased(name, 300_000, kinds, move |run| result(&replicas(how, &four_pixels(), run), run))
+    let chains = |name, samples, kinds: &[&'static str], how| {
+        unbiased(name, samples, kinds, move |run| result(&replicas(how, &four_pixels(), run), run))
     };
     let (paths, both) = (["metropolis", "path_tracer"], ["metropolis", "bidirectional"]);
     vec![
-        chains("over path tracing", &paths, (Over::PathTracer, Taught::Nothing)),
-        chains("over bidirectional path tracing", &both, (Over::Bidirectional, Taught::Nothing)),
-        chains("importance of pixels", &paths, (Over::PathTracer, Taught::Importance)),
-        chains("sizes of steps by pixel", &paths, (Over::PathTracer, Taught::Sizes)),
-        unbiased("in path space", 300_000, &both, |run| result(&of_paths(&four_pixels(), run), run)),
+        chains("over path tracing", 300_000, &paths, (Over::PathTracer, Taught::Nothing)),
+        chains("over bidirectional path tracing", 300_000, &both, (Over::Bidirectional, Taught::Nothing)),
+        chains("importance of pixels", 150_000, &paths, (Over::PathTracer, Taught::Importance)),
+        chains("sizes of steps by pixel", 150_000, &paths, (Over::PathTracer, Taught::Sizes)),
+        unbiased("in path space", 150_000, &both, |run| result(&of_paths(&four_pixels(), run), run)),
         unbiased("energy redistribution", 300_000, &["energy_redistribution"], |run| {
             result(&redistributed(&four_pixels(), run), run)
         }),
