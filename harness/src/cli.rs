@@ -101,7 +101,7 @@ pub struct RenderArguments {
     /// The exposure of .png files: 2^STOPS times linear radiance is shown [default: that of a small pilot image]
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = stops)]
     pub exposure: Option<f64>,
-    /// Stop after the pass of one sample per pixel in which this time runs out, for each image; not for photons
+    /// Stop after the pass of one sample per pixel in which this time runs out, or with the replicas of chains that have begun by then, for each image; not for photons
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub time_limit: Option<f64>,
     /// Instead of the scene's samples per pixel

@@ -69,6 +69,12 @@ impl<'t, C> Chain<'t, C> {
         Ok(())
     }
 
+    /// ln f* of the present state ([`Target::ln_present`]).
+    #[must_use]
+    pub fn ln_present(&self) -> f64 {
+        self.target.ln_present()
+    }
+
     /// Deposits what the present state still holds: to be called behind the last step.
     pub fn finish(&mut self, film: &mut Film<'_, C>) {
         let held = std::mem::take(&mut self.held);

@@ -12,6 +12,7 @@
 pub struct Importance {
     columns: u32,
     values: Vec<f64>,
+    floor: f64,
 }
 
 /// Error of a map that is no importance.
@@ -33,7 +34,7 @@ pub enum ImportanceError {
 }
 
 impl Importance {
-    /// The share of the mean below which no pixel falls that is learnt.
+    /// The share of the mean below which no pixel falls that is learnt, where no other is asked for.
     pub const FLOOR: f64 = 0.1;
 
     /// One value for each pixel, row by row.
@@ -47,7 +48,7 @@ impl Importance {
         }
         match values.iter().find(|value| !(**value > 0.0 && value.is_finite())) {
             Some(&value) => Err(ImportanceError::NotPositive(value)),
-            None => Ok(Self { columns, values }),
+            None => Ok(Self { columns, values, floor: Self::FLOOR }),
         }
     }
 
@@ -58,6 +59,18 @@ impl Importance {
     pub fn even(resolution: [u32; 2]) -> Result<Self, ImportanceError> {
         let pixels = u64::from(resolution[0]) * u64::from(resolution[1]);
         Self::new(resolution, vec![1.0; pixels as usize])
+    }
+
+    /// The same, from which others are learnt that fall nowhere below `floor` of their mean \[1\].
+    ///
+    /// # Errors
+    /// If it is not positive and finite.
+    pub fn with_floor(self, floor: f64) -> Result<Self, ImportanceError> {
+        if floor > 0.0 && floor.is_finite() {
+            Ok(Self { floor, ..self })
+        } else {
+            Err(ImportanceError::NotPositive(floor))
+        }
     }
 
     /// That of a pixel (column, row) of the image.
@@ -71,7 +84,7 @@ impl Importance {
     ///
     /// A chain visits a pixel in proportion to mean · importance. A pixel's variance falls with the visits, so that the sum of variances is least where the
     /// visits go as √(variance · visits so far): the importance as √(variance · importance/mean). Values are scaled to a mean of 1, and raised to
-    /// [`FLOOR`](Self::FLOOR) of that; a pixel of which nothing was seen gets the floor.
+    /// the floor of that; a pixel of which nothing was seen gets the floor.
     ///
     /// # Errors
     /// If the numbers of values differ from that of the pixels.
@@ -90,7 +103,8 @@ impl Importance {
         if mean == 0.0 {
             return Ok(self.clone());
         }
-        Self::new(resolution, wanted.iter().map(|wanted| (wanted / mean).max(Self::FLOOR)).collect())
+        let next = wanted.iter().map(|wanted| (wanted / mean).max(self.floor)).collect();
+        Self::new(resolution, next)?.with_floor(self.floor)
     }
 }
 
@@ -110,6 +124,8 @@ mod tests {
             let pixel = [index as u32 % 2, index as u32 / 2];
             assert!((next.of(pixel) - expected).abs() < 1e-15, "{pixel:?}");
         }
+        let higher = even.clone().with_floor(0.7).unwrap().learn(&means, &[4.0, 1.0, 16.0, 0.0]).unwrap();
+        assert_eq!((higher.of([1, 0]), higher.of([1, 1])), (0.7, 0.7));
         assert_eq!(even.learn(&means, &[0.0; 4]), Ok(even));
     }
 
@@ -119,6 +135,7 @@ mod tests {
         assert_eq!(missing, Err(ImportanceError::NotAnImage { columns: 2, rows: 2, found: 3 }));
         assert_eq!(Importance::new([1, 1], vec![0.0]), Err(ImportanceError::NotPositive(0.0)));
         assert!(Importance::even([0, 3]).is_err());
+        assert_eq!(Importance::even([1, 1]).unwrap().with_floor(0.0), Err(ImportanceError::NotPositive(0.0)));
         let error = Importance::even([1, 2]).unwrap().learn(&[1.0], &[1.0, 1.0]).unwrap_err();
         assert!(error.to_string().contains("1 x 2 pixels"));
     }

@@ -6,6 +6,8 @@
 //!
 //! Samples are independent, so that the errors of means are those of their variances, as of any estimator.
 
+pub mod modes;
+
 use crate::{Mutation, acceptance};
 use fairflight_sources::{Seeded, derive_seed};
 use fairflight_stats::family::sidak_level;

@@ -65,6 +65,21 @@ impl Kernels {
         Ok(Self { sizes, columns, shares })
     }
 
+    /// Sizes that part the steps of `step` by their logarithm, equally probable in each pixel: where a part holds whole octaves, all together are that step.
+    ///
+    /// # Errors
+    /// The errors of [`even`](Self::even).
+    pub fn parting(step: SmallStep, parts: u32, resolution: [u32; 2]) -> Result<Self, KernelsError> {
+        let ratio = step.largest() / step.least();
+        let edge = |part: u32| match part {
+            0 => step.least(),
+            _ if part == parts => step.largest(),
+            _ => step.least() * ratio.powf(f64::from(part) / f64::from(parts)),
+        };
+        let size = |part| SmallStep::new(edge(part), edge(part + 1)).unwrap_or(step);
+        Self::even((0..parts.min(1 + Self::MOST as u32)).map(size).collect(), resolution)
+    }
+
     /// The sizes.
     #[must_use]
     pub fn sizes(&self) -> &[SmallStep] {
@@ -172,6 +187,21 @@ mod tests {
         for (u, expected) in [(0.0, 0), (0.299, 0), (0.301, 1), (1.0 - f64::EPSILON / 2.0, 1)] {
             assert_eq!(learnt.choose([1, 0], &mut Scripted::new([u])), expected);
         }
+    }
+
+    #[test]
+    fn a_step_is_parted_by_octaves() {
+        let three = Kernels::parting(SmallStep::default(), 3, [1, 1]).unwrap();
+        let ends: Vec<_> =
+            three.sizes().iter().map(|size| [1.0 / size.least(), 1.0 / size.largest()]).collect();
+        for (found, expected) in ends.iter().flatten().zip([1024.0, 256.0, 256.0, 64.0, 64.0, 16.0]) {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{ends:?}");
+        }
+        assert_eq!(
+            Kernels::parting(SmallStep::default(), 0, [1, 1]),
+            Err(KernelsError::Sizes { found: 0, most: 8 })
+        );
+        assert!(Kernels::parting(SmallStep::default(), 99, [1, 1]).is_err());
     }
 
     #[test]

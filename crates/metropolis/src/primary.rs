@@ -222,6 +222,10 @@ impl<C: Spectrum> Target<C> for Primary<'_, C> {
         }
     }
 
+    fn ln_present(&self) -> f64 {
+        self.present.target.ln()
+    }
+
     fn kinds(&self) -> &[&'static str] {
         let sizes = match &self.steps {
             SmallSteps::Alike(_) => 1,

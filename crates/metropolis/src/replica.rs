@@ -2,7 +2,7 @@
 
 use crate::{Acceptance, Bootstrap, Chain, Film, NotFinite, Target};
 use fairflight_sources::{Seeded, derive_seed};
-use fairflight_stats::Moments;
+use fairflight_stats::{Autocorrelation, Moments};
 
 /// Sizes of a replica.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +69,8 @@ pub struct Replica {
     pub is_black: bool,
     /// Acceptance of each of [`Target::kinds`].
     pub acceptance: Vec<Acceptance>,
+    /// Series of ln f* along the chains: how many steps are as good as one independent sample, as a diagnosis. Errors come from replicas alone.
+    pub autocorrelation: Autocorrelation,
 }
 
 impl Plan {
@@ -114,6 +116,7 @@ impl Plan {
         let mut acceptance = vec![Acceptance::default(); target.kinds().len()];
         let mut source = Seeded::new(steps);
         let energy = bootstrap.brightness() / self.steps as f64;
+        let mut autocorrelation = Autocorrelation::new();
         let mut is_black = false;
         let mut number = 0;
         for chain in 0..self.chains {
@@ -128,10 +131,15 @@ impl Plan {
                 let step = chain_of.step(film, &mut acceptance, &mut source);
                 step.map_err(|NotFinite| refused(Phase::Steps)(number))?;
                 number += 1;
+                let ln_present = chain_of.ln_present();
+                if ln_present.is_finite() {
+                    autocorrelation.push(ln_present);
+                }
             }
             chain_of.finish(film);
+            autocorrelation.end();
         }
-        Ok(Replica { bootstrap: *bootstrap.weights(), is_black, acceptance })
+        Ok(Replica { bootstrap: *bootstrap.weights(), is_black, acceptance, autocorrelation })
     }
 }
 

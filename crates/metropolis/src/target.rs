@@ -28,6 +28,12 @@ pub trait Target<C> {
 
     /// Names of the kinds of proposals.
     fn kinds(&self) -> &[&'static str];
+
+    /// ln f* of the present state up to a constant, by which a chain's [autocorrelation](fairflight_stats::Autocorrelation) is told; NaN where that is not
+    /// known. The logarithm, since f* of paths has no variance where they come close to a corner or to each other.
+    fn ln_present(&self) -> f64 {
+        f64::NAN
+    }
 }
 
 /// What sees each contribution to an image: the pixel (column, row), and the value.

@@ -1,11 +1,11 @@
-//! Targets that follow noise: the image is what it was, and what changes must change together.
+//! Targets that follow noise: the image is what it was. What must change together is told by twins in the catalogue.
 
 mod toys;
 
-use fairflight_metropolis::{Acceptance, Bootstrap, Chain, Importance, Integrand, Plan, Primary, Splats};
+use fairflight_metropolis::{Importance, Integrand, Plan, Primary, Splats};
 use fairflight_sources::{SmallStep, UniformSource, derive_seed};
 use fairflight_stats::Moments;
-use toys::{SEED, accepted, half, integrand, left, modes, rejected, score, stream, verdict};
+use toys::{SEED, accepted, half, integrand, modes, score, verdict};
 
 /// The left half is six times as important.
 fn importance() -> Importance {
@@ -22,37 +22,6 @@ fn any_importance_has_the_same_image() {
     let mut target = primary(&mut integrand).with_importance(&importance);
     let plan = Plan::new(16, 1, 20).unwrap();
     accepted("importance", &verdict(40_000, SEED, |seed| score(&plan, &mut target, seed).0));
-}
-
-/// The score of one chain from a set of 16, unscaled, its b̂, and that of another set by brightness alone.
-fn twin(name: &str, scale: impl Fn(f64, f64, f64) -> f64) {
-    let (mut first, mut second, importance) = (integrand, integrand, importance());
-    let mut target = primary(&mut first).with_importance(&importance);
-    let mut plain = primary(&mut second);
-    let found = verdict(40_000, SEED, |seed| {
-        let set = Bootstrap::draw(&mut target, 16, derive_seed(seed, 0)).unwrap();
-        set.start(&mut target, set.choose(&mut stream(seed, 1)).unwrap());
-        let mut chain = Chain::new(&mut target, 1.0 / 20.0);
-        let (mut counts, mut source) = ([Acceptance::default(); 2], stream(seed, 2));
-        let score = left(|film| {
-            for _ in 0..20 {
-                chain.step(film, &mut counts, &mut source).unwrap();
-            }
-            chain.finish(film);
-        });
-        // The same variates, another target.
-        let bright = Bootstrap::draw(&mut plain, 16, derive_seed(seed, 0)).unwrap();
-        scale(score, set.brightness(), bright.brightness())
-    });
-    rejected(name, &found);
-}
-
-#[test]
-fn what_does_not_change_with_the_importance_is_found() {
-    // aware_no_importance: F is not divided by the importance of its pixel, six times too much of the left half. Expected |z| 334.
-    twin("aware_no_importance", |score, b, _| 6.0 * score * b);
-    // The brightness of the target without importance. Expected |z| 1784.
-    twin("aware_plain_brightness", |score, _, bright| score * bright);
 }
 
 #[test]

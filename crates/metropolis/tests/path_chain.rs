@@ -11,16 +11,40 @@ use fairflight_metropolis::{Acceptance, FromBothEnds, Integrand, Plan, Splats, T
 use fairflight_paths::transport::Emitters;
 use fairflight_paths::{Heuristic, Uniform, Walk};
 use fairflight_sources::{Seeded, derive_seed};
-use fairflight_stats::{Moments, Reference, judge};
+use fairflight_stats::{Moments, Reference, Verdict, judge};
 use fairflight_transmittance::Regular;
-use path_common::{Made, SIGMA_T, Scene, glass, hall, sky};
+use path_common::{Made, Mistake, SIGMA_T, Scene, Twin, glass, hall, sky};
 
 const SEED: u64 = 1;
 /// Fewer leave a mean that is not testable.
 const REPLICAS: u64 = 20_000;
 
-/// Judges replicas less independent samples against 0; prints the acceptance of each mutation.
-fn judged(name: &str, scene: &Scene, mutations: for<'s> fn(&Stage<'s>) -> Vec<Named<'s>>) {
+/// A part of the image: what all pixels sum up to is the start's alone, and no step changes it.
+type Seen = fn([u32; 2], f64) -> f64;
+
+/// A quarter of the image.
+fn corner([column, row]: [u32; 2], value: f64) -> f64 {
+    if column < 2 && row >= 2 { value } else { 0.0 }
+}
+
+/// The quarter in the middle.
+fn middle([column, row]: [u32; 2], value: f64) -> f64 {
+    if (1..3).contains(&column) && (1..3).contains(&row) { value } else { 0.0 }
+}
+
+/// Judges replicas less independent samples against 0.
+fn agrees(name: &str, scene: &Scene, mutations: for<'s> fn(&Stage<'s>) -> Vec<Named<'s>>) {
+    let verdict = judged(name, (scene, corner), mutations);
+    assert_eq!(verdict.sound, Some(true), "{name}: {}", verdict.reason);
+    assert!(verdict.detectable_relative_bias.is_some_and(|bias| bias < 0.15), "{name}");
+}
+
+/// The verdict on replicas less independent samples; prints the acceptance of each mutation.
+fn judged(
+    name: &str,
+    (scene, seen): (&Scene, Seen),
+    mutations: for<'s> fn(&Stage<'s>) -> Vec<Named<'s>>,
+) -> Verdict {
     let emitters = scene.emitters();
     let joined = || {
         let (world, camera, emitters) = (scene.world(), &scene.camera, &emitters);
@@ -66,13 +90,7 @@ fn judged(name: &str, scene: &Scene, mutations: for<'s> fn(&Stage<'s>) -> Vec<Na
         verdict.mean_z.unwrap(),
         verdict.detectable_relative_bias
     );
-    assert_eq!(verdict.sound, Some(true), "{name}: {}", verdict.reason);
-    assert!(verdict.detectable_relative_bias.is_some_and(|bias| bias < 0.15), "{name}");
-}
-
-/// A part of the image: what all pixels sum up to is the start's alone, and no step changes it.
-fn seen([column, row]: [u32; 2], value: f64) -> f64 {
-    if column < 2 && row >= 2 { value } else { 0.0 }
+    verdict
 }
 
 /// What mutations are made from.
@@ -116,13 +134,36 @@ fn in_pixels(scene: Scene) -> Scene {
 #[test]
 fn chains_of_small_mutations_are_unbiased_though_not_ergodic() {
     for (name, scene) in [("hall", hall()), ("glass", glass()), ("sky", sky())] {
-        judged(name, &in_pixels(scene), small);
+        agrees(name, &in_pixels(scene), small);
     }
 }
 
 #[test]
 fn chains_with_fresh_paths_are_unbiased() {
     for (name, scene) in [("hall", hall()), ("glass", glass()), ("sky", sky())] {
-        judged(name, &in_pixels(scene), with_fresh);
+        agrees(name, &in_pixels(scene), with_fresh);
     }
+}
+
+/// Another point of the film alone.
+fn lens<'s>(stage: &Stage<'s>) -> Vec<Named<'s>> {
+    vec![("lens", Box::new(Lens::new(stage.view, sizes())))]
+}
+
+/// The same with the camera's Jacobian inverted, as antwerpen-2011 eq. 3.18 prints it.
+fn inverted_lens<'s>(stage: &Stage<'s>) -> Vec<Named<'s>> {
+    let mistake: Mistake = |_, x| -6.0 * x.edges[0].direction.z.ln();
+    lens(stage)
+        .into_iter()
+        .map(|(name, right)| -> Named<'s> { (name, Box::new(Twin { right, world: stage.view, mistake })) })
+        .collect()
+}
+
+#[test]
+fn whole_replicas_find_a_wrong_jacobian() {
+    let scene = in_pixels(hall());
+    let right = judged("lens", (&scene, middle), lens);
+    assert_eq!(right.sound, Some(true), "{}", right.reason);
+    let wrong = judged("inverted lens", (&scene, middle), inverted_lens);
+    assert_eq!(wrong.sound, Some(false), "{}", wrong.reason);
 }

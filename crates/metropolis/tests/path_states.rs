@@ -9,10 +9,11 @@ use fairflight_metropolis::path::{
 };
 use fairflight_scene::Segment;
 use fairflight_sources::Seeded;
-use path_common::{Bank, SIGMA_T, Scene, Traced, bank, fine_sizes, glass, hall, probes, signature, sky};
+use path_common::{
+    Bank, Boxed, SIGMA_T, Scene, Traced, bank, fine_sizes, glass, hall, probes, signature, sky,
+};
 use std::collections::BTreeSet;
 
-type Boxed<'w> = Box<dyn Mutation<PathState> + 'w>;
 type Make = fn(&dyn PathWorld) -> Boxed<'_>;
 
 const ALL: [(&str, Make); 8] = [

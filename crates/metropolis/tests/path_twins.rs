@@ -9,15 +9,11 @@ use fairflight_metropolis::laws::{Drift, Probes, Steps};
 use fairflight_metropolis::path::{
     Caustic, LaiLens, Lens, PathState, PathWorld, Propagation, Scattering, Towards,
 };
-use fairflight_sources::{Seeded, UniformSource};
-use path_common::{Scene, Traced, fine_sizes, hall, mirrored, probes, sizes};
+use fairflight_sources::Seeded;
+use path_common::{Boxed, Mistake, Scene, Traced, Twin, fine_sizes, hall, mirrored, probes, sizes};
 
 /// False alarm of one case, all functions together.
 const ALPHA: f64 = 1e-6;
-
-type Mistake = fn(&dyn PathWorld, &PathState) -> f64;
-
-type Boxed<'w> = Box<dyn Mutation<PathState> + 'w>;
 
 /// A mutation on paths of one kind.
 struct Case {
@@ -28,20 +24,6 @@ struct Case {
     moved: &'static [usize],
     /// Mistakes: their name, and the logarithm of the wrong f J over the right one.
     twins: &'static [(&'static str, Mistake)],
-}
-
-/// A mutation with a mistake.
-struct Twin<'w> {
-    right: Boxed<'w>,
-    world: &'w dyn PathWorld,
-    mistake: Mistake,
-}
-
-impl Mutation<PathState> for Twin<'_> {
-    fn propose(&mut self, x: &PathState, y: &mut PathState, source: &mut dyn UniformSource) -> Option<f64> {
-        let ratio = self.right.propose(x, y, source)?;
-        Some(ratio + (self.mistake)(self.world, y) - (self.mistake)(self.world, x))
-    }
 }
 
 /// ln of the cosine of the first edge to the axis of the camera.

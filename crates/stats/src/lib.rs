@@ -30,6 +30,7 @@ mod sample_size;
 mod variance_test;
 
 pub mod approximation;
+pub mod autocorrelation;
 pub mod bernstein;
 pub mod binomial;
 pub mod binomial_inference;
@@ -45,6 +46,7 @@ pub mod student;
 pub mod verdict;
 
 pub use approximation::NormalApproximation;
+pub use autocorrelation::Autocorrelation;
 pub use bernstein::Bernstein;
 pub use binomial::{Binomial, BinomialError};
 pub use binomial_inference::{clopper_pearson, trials_needed};

@@ -2,14 +2,14 @@
 
 use super::beam_radiance::BeamRadiancePlan;
 use super::bidirectional::BidirectionalPlan;
-use super::metropolis::{ChainStarts, MetropolisPlan};
+use super::metropolis::{ChainStarts, Learning, MetropolisPlan};
 use super::path_tracer::PathTracerPlan;
 use super::single_scattering::SingleScatteringPlan;
 use super::transport::{Stage, TransportPlan, VplPlan};
 use super::{AnyPhase, Tally, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, Unlawful};
-use crate::spec::{IntegratorSpec, MetropolisSpec, Particles, ThicknessSpec, TransmittanceSpec};
+use crate::spec::{Adaptation, IntegratorSpec, Particles, ThicknessSpec, TransmittanceSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
 use fairflight_scene::{Spectrum, Volume};
@@ -200,9 +200,12 @@ impl IntegratorPlan {
             IntegratorSpec::BeamRadiance(spec) => {
                 BeamRadiancePlan::build(spec, scene).map(Self::BeamRadiance)
             }
-            IntegratorSpec::Metropolis(MetropolisSpec { bootstrap, chains, steps }) => {
-                let starts = ChainStarts::Bootstrap { samples: *bootstrap, chains: *chains };
-                MetropolisPlan::build(steps, starts, scene).map(|plan| Self::Metropolis(Box::new(plan)))
+            IntegratorSpec::Metropolis(spec) => {
+                let learning =
+                    Learning::of(spec.importance.as_ref(), spec.adaptation == Adaptation::Crosswise);
+                let (samples, chains) = (spec.bootstrap, spec.chains);
+                let starts = ChainStarts::Bootstrap { samples, chains, learning };
+                MetropolisPlan::build(&spec.steps, starts, scene).map(|plan| Self::Metropolis(Box::new(plan)))
             }
             IntegratorSpec::EnergyRedistribution(spec) => {
                 let (steps, chains, most) = (spec.chain_length, spec.chains_per_sample, spec.most_chains);

@@ -6,10 +6,11 @@ use super::path_space::PathSpace;
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;
-use crate::spec::{Over, StepsSpec};
+use crate::spec::{Over, StagesSpec, StepsSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_metropolis::{
-    FromBothEnds, FromCamera, Integrand, Lengths, Multiplexed, Plan, Primary, Target,
+    Experience, FromBothEnds, FromCamera, Importance, Integrand, Kernels, Lengths, Multiplexed, Plan,
+    Primary, Target,
 };
 use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{Integrator, PathTracer};
@@ -45,6 +46,8 @@ pub(crate) enum ChainStarts {
         samples: Option<u64>,
         /// Number of chains.
         chains: u32,
+        /// What replicas learn from those before.
+        learning: Learning,
     },
     /// Short chains for each sample, by the light that it found.
     EverySample {
@@ -56,6 +59,48 @@ pub(crate) enum ChainStarts {
         most: Option<u64>,
     },
 }
+
+/// Learning of later replicas from earlier ones: each stage has starts of its own, and no replica learns from itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Learning {
+    /// Stages of an importance of pixels, and its floor.
+    pub importance: Option<(u32, f64)>,
+    /// True if sizes of small steps are learnt.
+    pub adapts: bool,
+}
+
+impl Learning {
+    /// The learning of a spec.
+    pub(super) fn of(importance: Option<&StagesSpec>, adapts: bool) -> Self {
+        Self { importance: importance.map(|spec| (spec.stages, spec.floor)), adapts }
+    }
+
+    /// Stages that share the replicas; sizes of steps are learnt in two at least.
+    pub(crate) fn stages(self) -> u32 {
+        self.importance.map_or(1, |(stages, _)| stages).max(1 + u32::from(self.adapts))
+    }
+}
+
+/// Knowledge of a replica from stages before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Lesson<'l> {
+    /// Importance of pixels.
+    pub importance: Option<&'l Importance>,
+    /// Sizes of small steps.
+    pub kernels: Option<&'l Kernels>,
+}
+
+/// Results of a replica beside its image.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Walked {
+    /// Walks that were cut.
+    pub truncated: u64,
+    /// Acceptance of each size of steps in each pixel, where they are learnt.
+    pub experience: Option<Experience>,
+}
+
+/// Sizes of small steps that adapt: parts of the step, of two octaves each where nothing else is asked for.
+pub(crate) const SIZES: u32 = 3;
 
 /// Replicas where nothing else is asked for.
 const REPLICAS: u32 = 16;
@@ -101,7 +146,14 @@ impl MetropolisPlan {
             )));
         }
         match self.starts {
-            ChainStarts::Bootstrap { samples: first, chains } => {
+            ChainStarts::Bootstrap { samples: first, chains, learning } => {
+                let (replicas, stages) = (self.replicas.min(samples), learning.stages());
+                if stages > 1 && replicas < 2 * stages {
+                    let key = if learning.importance.is_some() { "importance.stages" } else { "adaptation" };
+                    return Err(Failure::refused(format!(
+                        "integrator.{key}: {stages} stages need two replicas each to learn from, found {replicas}"
+                    )));
+                }
                 let mutations = pixels * u64::from(samples / self.replicas.min(samples));
                 Self::sizes(first, chains, mutations).map(|_| ())
             }
@@ -120,36 +172,60 @@ impl MetropolisPlan {
             .map_err(|error| Failure::refused(format!("integrator.chains: {error}")))
     }
 
+    /// The size of small steps where nothing is learnt.
+    pub(crate) fn small_step(&self) -> SmallStep {
+        self.small_step
+    }
+
+    /// What replicas learn from those before.
+    pub(crate) fn learning(&self) -> Learning {
+        match self.starts {
+            ChainStarts::Bootstrap { learning, .. } => learning,
+            ChainStarts::EverySample { .. } => Learning::default(),
+        }
+    }
+
     /// Chains over `integrand`.
     fn over<C: Spectrum>(
         &self,
-        integrand: &mut dyn Integrand<C>,
+        (integrand, lesson): (&mut dyn Integrand<C>, Lesson<'_>),
         work: &mut dyn FnMut(&mut dyn Target<C>),
-    ) -> Result<(), Failure> {
+    ) -> Result<Option<Experience>, Failure> {
         let target = Primary::new(integrand).with_small_step(self.small_step).with_layout(self.layout);
         let target = target.with_large_step(self.large_step);
-        work(&mut target.map_err(|error| Failure::refused(format!("integrator.large_step: {error}")))?);
-        Ok(())
+        let mut target =
+            target.map_err(|error| Failure::refused(format!("integrator.large_step: {error}")))?;
+        if let Some(importance) = lesson.importance {
+            target = target.with_importance(importance);
+        }
+        if let Some(kernels) = lesson.kernels {
+            target = target.with_kernels(kernels);
+        }
+        work(&mut target);
+        Ok(target.take_experience())
     }
 
-    /// Does `work` with the target of chains in a volume; gives the number of walks that were cut.
+    /// Does `work` with the target of chains in a volume, which is what a lesson makes of it.
     ///
     /// # Errors
     /// If a parameter is not lawful there.
     pub(crate) fn with_target<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &'s self,
         volume: &'s SceneVolume<'s, M, C>,
-        stage: Stage<'s, C>,
+        (stage, lesson): (Stage<'s, C>, Lesson<'s>),
         work: &mut dyn FnMut(&mut dyn Target<C>),
-    ) -> Result<u64, Failure> {
+    ) -> Result<Walked, Failure> {
         let Stage { lights, surfaces, camera, unlawful, .. } = stage;
         let joined = || self.paths.joined(volume, stage);
         match self.over {
-            None => self.space.with_target(joined(), work),
+            None => {
+                let truncated = self.space.with_target((joined(), lesson.importance), work)?;
+                Ok(Walked { truncated, experience: None })
+            }
             Some(Over::Bidirectional) => {
                 let mut integrand = FromBothEnds::new(joined()).with_first_order(self.first_order);
-                self.over(&mut integrand, work)?;
-                Ok(integrand.integrator().truncated())
+                let experience = self.over((&mut integrand, lesson), work)?;
+                Ok(Walked { truncated: integrand.integrator().truncated(), experience })
             }
             Some(Over::Multiplexed) => {
                 // The same for all replicas, which no law asks for.
@@ -159,8 +235,8 @@ impl MetropolisPlan {
                     .or_else(|_| Lengths::new(self.first_order, &[], TAIL))
                     .expect("a tail is a law of lengths");
                 let mut integrand = Multiplexed::new(joined(), lengths);
-                self.over(&mut integrand, work)?;
-                Ok(integrand.integrator().truncated())
+                let experience = self.over((&mut integrand, lesson), work)?;
+                Ok(Walked { truncated: integrand.integrator().truncated(), experience })
             }
             Some(Over::PathTracer) => {
                 let TransportPlan { walk, shadow, heuristic } = self.transport();
@@ -168,8 +244,8 @@ impl MetropolisPlan {
                 let tracer = PathTracer::new(world, walk.walk(), shadow.worker(unlawful), *heuristic)
                     .with_max_vertices(self.paths.max_vertices);
                 let mut integrand = FromCamera::new(camera, tracer);
-                self.over(&mut integrand, work)?;
-                Ok(integrand.integrator().truncated())
+                let experience = self.over((&mut integrand, lesson), work)?;
+                Ok(Walked { truncated: integrand.integrator().truncated(), experience })
             }
         }
     }

@@ -61,6 +61,12 @@ impl IntegratorPlan {
         }
     }
 
+    /// True if it draws chains, whose images may end after any replica.
+    #[must_use]
+    pub fn is_of_chains(&self) -> bool {
+        matches!(self, Self::Metropolis(_))
+    }
+
     /// True if samples are not complete before all of their pass are drawn.
     #[must_use]
     pub fn splats(&self) -> bool {

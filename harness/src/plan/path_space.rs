@@ -6,18 +6,19 @@ use crate::estimator::InScene;
 use crate::spec::{MutationKind, StepsSpec};
 use fairflight_bidirectional::Exact;
 use fairflight_media::{LineThickness, Ray};
-use fairflight_metropolis::Target;
 use fairflight_metropolis::path::{
     Caustic, EdgeTransmittance, Fresh, LaiLens, Lens, Named, NullCollisions, PathTarget, Propagation,
     Scattering, StepSizes, Towards, View,
 };
+use fairflight_metropolis::{Importance, Target};
 use fairflight_scene::Spectrum;
 use fairflight_sources::UniformSource;
 
 /// Mutations of paths that fit a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PathSpace {
-    mutations: Vec<MutationKind>,
+    /// Mutations with their shares.
+    mutations: Vec<(MutationKind, f64)>,
     has_closed_form: bool,
 }
 
@@ -34,13 +35,12 @@ impl PathSpace {
                 "integrator.estimator: space: path has its own transmittance, in closed form or by the null collisions of its states",
             ));
         }
-        let mut mutations = vec![Lens, LaiLens, Caustic, Scattering, Propagation];
-        if has_closed_form {
-            mutations.push(Bidirectional);
-        }
+        let all = [Lens, LaiLens, Caustic, Scattering, Propagation, Bidirectional].into_iter();
+        let lawful = all.filter(|kind| has_closed_form || *kind != Bidirectional);
+        let mut mutations: Vec<_> = lawful.map(|kind| (kind, kind.variants())).collect();
         if let Some(asked) = &spec.mutations {
             mutations.clone_from(asked);
-            if mutations.contains(&Bidirectional) && !has_closed_form {
+            if mutations.iter().any(|(kind, _)| *kind == Bidirectional) && !has_closed_form {
                 return Err(Failure::refused(
                     "integrator.mutations: bidirectional needs a medium whose optical thickness has a closed form: homogeneous, \
                      analytic_cosine or vdb",
@@ -56,7 +56,7 @@ impl PathSpace {
     /// If the sampling extinction lies below the extinction: contributions of either sign have no density.
     pub(super) fn with_target<'s, M: LineThickness + 's, C: Spectrum + 's>(
         &self,
-        joined: Joined<'s, M, C>,
+        (joined, importance): (Joined<'s, M, C>, Option<&'s Importance>),
         work: &mut dyn FnMut(&mut dyn Target<C>),
     ) -> Result<u64, Failure> {
         let refuse =
@@ -79,8 +79,8 @@ impl PathSpace {
         };
         let view = View { world, camera, edges };
         let sizes = StepSizes::of_image(camera.resolution());
-        let mut named: Vec<Named<'_>> = Vec::new();
-        for kind in &self.mutations {
+        let (mut named, mut shares): (Vec<Named<'_>>, Vec<f64>) = (Vec::new(), Vec::new());
+        for (kind, share) in &self.mutations {
             match kind {
                 MutationKind::Lens => {
                     named.push(("lens", Box::new(Lens::new(&view, sizes))));
@@ -107,10 +107,15 @@ impl PathSpace {
                     named.push(("bidirectional", Box::new(fresh.map_err(|error| refuse(&error))?)));
                 }
             }
+            shares.resize(named.len(), share / kind.variants());
         }
-        let target = PathTarget::new(joined, &view, named, 2);
-        let mut target =
-            target.map_err(|error| Failure::refused(format!("integrator.mutations: {error}")))?;
+        let refuse =
+            |error: &dyn std::fmt::Display| Failure::refused(format!("integrator.mutations: {error}"));
+        let target = PathTarget::new(joined, &view, named, 2).map_err(|error| refuse(&error))?;
+        let mut target = target.with_shares(&shares).map_err(|error| refuse(&error))?;
+        if let Some(importance) = importance {
+            target = target.with_importance(importance);
+        }
         work(&mut target);
         Ok(target.integrator().truncated())
     }

@@ -25,6 +25,8 @@ pub(super) struct Draw<'a, C> {
     pub seed: u64,
     /// Callback that is told how many samples were added.
     pub advance: &'a (dyn Fn(u64) + Sync),
+    /// True once no further replica is to begin.
+    pub ends: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Work with the integrator of one tile.
@@ -172,6 +174,8 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         };
         batch.mean = canvas.mean;
         canvas.cost = canvas.cost.and(spent);
+        // As many pixel by pixel as the replicas have, which may have ended early.
+        let samples = batch.replicas.as_ref().map_or(samples, |layer| layer.samples);
         let (range, camera) = ((canvas.samples, samples, canvas.seed), &self.plan.camera);
         let mut light = integrator.splats().then(|| LightImage::new(camera.resolution()));
         let (splats, groups) = (light.is_some(), integrator.groups());
@@ -319,7 +323,7 @@ mod tests {
         let Spectra::Gray(radiant) = &plan.spectra else { panic!("it is gray") };
         let mut canvas = Canvas::new(plan.camera.resolution(), 5, None);
         for _ in 0..3 {
-            let draw = Draw { plan: &plan, radiant, seed: 5, advance: &|_| () };
+            let draw = Draw { plan: &plan, radiant, seed: 5, advance: &|_| (), ends: &|| false };
             draw.add(&Numbers, &mut canvas, 1).unwrap();
         }
         let batches = [0, 1, 2].map(|pass| Seeded::for_batch(5, pass).next_uniform());

@@ -3,8 +3,9 @@
 use super::batch::Batch;
 use super::canvas::Spent;
 use super::draw::Draw;
+use super::lessons::Lessons;
 use super::replicas::{Chains, REPLICA_STREAM, Replica};
-use crate::plan::{ChainStarts, MetropolisPlan, Stage};
+use crate::plan::{ChainStarts, Lesson, MetropolisPlan, Stage, Walked};
 use crate::{Failure, interrupt};
 use cpu_time::ThreadTime;
 use fairflight_media::LineThickness;
@@ -15,7 +16,7 @@ use fairflight_paths::transport::Emitters;
 use fairflight_photons::PhotonMap;
 use fairflight_scene::Spectrum;
 use fairflight_sources::{UniformSource, derive_seed};
-use fairflight_stats::Moments;
+use fairflight_stats::{Autocorrelation, Moments};
 use std::cell::Cell;
 
 /// Samples between two looks at the interrupt.
@@ -65,6 +66,9 @@ impl<C> Target<C> for Watched<'_, C> {
     fn kinds(&self) -> &[&'static str] {
         self.target.kinds()
     }
+    fn ln_present(&self) -> f64 {
+        self.target.ln_present()
+    }
 }
 
 impl<C: Spectrum> Draw<'_, C> {
@@ -78,8 +82,24 @@ impl<C: Spectrum> Draw<'_, C> {
         plan: &MetropolisPlan,
         (emitters, count): (&Emitters<C>, u32),
     ) -> Result<(Batch<C>, Spent), Failure> {
-        let (layer, spent) =
-            self.layer(count, &|index, samples| self.chain(medium, plan, emitters, (index, samples)))?;
+        let (learning, resolution) = (plan.learning(), self.plan.camera.resolution());
+        let mut lessons = Lessons::first(learning, plan.small_step(), resolution)?;
+        let (mut all, stages) = (Vec::new(), u64::from(learning.stages()));
+        for stage in 0..stages {
+            let [from, to] = [stage, stage + 1].map(|stage| (u64::from(count) * stage / stages) as u32);
+            let replica =
+                |index, numbers| self.chain(medium, plan, (emitters, lessons.of(index)), (index, numbers));
+            let made = self.replicas((from..to, count), &replica)?;
+            if stage + 1 < stages {
+                lessons = lessons.next(&made)?;
+            }
+            if !made.is_empty() {
+                // Series of another target.
+                all.iter_mut().for_each(Replica::forget_series);
+            }
+            all.extend(made);
+        }
+        let (layer, spent) = self.layer(&all);
         Ok((Batch { replicas: Some(layer), ..Batch::none() }, spent))
     }
 
@@ -87,7 +107,7 @@ impl<C: Spectrum> Draw<'_, C> {
         &self,
         medium: M,
         plan: &MetropolisPlan,
-        emitters: &Emitters<C>,
+        (emitters, lesson): (&Emitters<C>, Lesson<'_>),
         (index, samples): (u32, u32),
     ) -> Result<Replica<C>, Failure> {
         let clock = ThreadTime::now();
@@ -108,15 +128,17 @@ impl<C: Spectrum> Draw<'_, C> {
         let mut pixels = vec![C::ZERO; columns * rows];
         let drawn = (columns * rows) as u64 * u64::from(samples);
         let mut made = None;
-        let truncated = plan.with_target(&volume, stage, &mut |target| {
+        let walked = plan.with_target(&volume, (stage, lesson), &mut |target| {
             let mut target =
                 Watched { target, left: drawn, drawn: 0, advance: self.advance, interrupted: false };
             let mut film = |[column, row]: [u32; 2], value| {
                 pixels[row as usize * columns + column as usize] += value;
             };
             let chains = match plan.starts {
-                ChainStarts::Bootstrap { samples, chains } => MetropolisPlan::sizes(samples, chains, drawn)
-                    .and_then(|sizes| self.long_chains(&mut target, sizes, index, &mut film)),
+                ChainStarts::Bootstrap { samples, chains, .. } => {
+                    MetropolisPlan::sizes(samples, chains, drawn)
+                        .and_then(|sizes| self.long_chains(&mut target, sizes, index, &mut film))
+                }
                 ChainStarts::EverySample { steps, chains, most } => {
                     self.short_chains(&mut target, (steps, chains, most), (index, drawn), &mut film)
                 }
@@ -127,14 +149,14 @@ impl<C: Spectrum> Draw<'_, C> {
         if let Some(unlawful) = unlawful.get() {
             return Err(self.plan.integrator.explain(unlawful));
         }
-        let truncated = truncated?;
+        let Walked { truncated, experience } = walked?;
         let chains = match made {
             Some((chains, false)) => chains?,
             _ => return Err(Failure::Interrupted),
         };
         let cpu_seconds = clock.elapsed().as_secs_f64();
         let cost = Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated, ..Spent::default() };
-        Ok(Replica { pixels, samples, cost, chains: Some(chains) })
+        Ok(Replica { number: index, pixels, samples, cost, chains: Some(chains), experience })
     }
 
     /// A few long chains, from starts that independent samples chose.
@@ -154,6 +176,7 @@ impl<C: Spectrum> Draw<'_, C> {
             bootstrap: replica.bootstrap,
             black: replica.is_black.into(),
             steps: target.kinds().iter().copied().zip(replica.acceptance).collect(),
+            autocorrelation: replica.autocorrelation,
         })
     }
 
@@ -191,6 +214,7 @@ impl<C: Spectrum> Draw<'_, C> {
             black: u32::from(weights.maximum() == Some(0.0)),
             bootstrap: weights,
             steps: target.kinds().iter().copied().zip(acceptance).collect(),
+            autocorrelation: Autocorrelation::new(),
         })
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! An image is drawn in one pass, or pass by pass: under `--time-limit`, and where the integrator has a batch for each. Between
 //! passes the files are put in place now and then, with statistics that say that the image is not finished: somebody may watch it, and
-//! a kill leaves the last one. An interrupt ends such an image after a whole pass.
+//! a kill leaves the last one. An interrupt ends such an image after a whole pass, and one of chains after whole replicas.
 
 mod batch;
 mod canvas;
 mod draw;
+mod lessons;
 mod light_image;
 mod metropolis;
 mod output;
@@ -78,7 +79,9 @@ pub fn run(
             Some(_) => targets.outputs_of(i, points.len()),
             None => targets.outputs(),
         };
-        let in_passes = arguments.time_limit.is_some() || point.plan.integrator.draws_in_batches();
+        let integrator = &point.plan.integrator;
+        let in_passes =
+            arguments.time_limit.is_some() || integrator.draws_in_batches() || integrator.is_of_chains();
         // Before there is a file, and until all are in place: who interrupts gets what is done.
         let early = in_passes.then(|| EarlyEnd { limit: arguments.time_limit, stop: stop_gently() });
         let exposure = arguments.exposure.map(|stops| (Exposure::of_stops(stops), "--exposure"));

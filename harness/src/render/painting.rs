@@ -50,7 +50,7 @@ impl<'p> Painting<'p> {
     /// # Errors
     /// If a look-up is not lawful, or a sample not finite. The painting is then of no use.
     pub fn add_pass(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
-        self.add(1, advance)
+        self.add(1, (advance, &|| false))
     }
 
     /// Adds all samples that are missing: in one pass, unless the integrator has a batch for each.
@@ -60,28 +60,41 @@ impl<'p> Painting<'p> {
     pub fn complete(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
         let batches = self.plan.integrator.draws_in_batches();
         while !self.is_complete() {
-            self.add(if batches { 1 } else { self.plan.samples_per_pixel - self.samples }, advance)?;
+            let samples = if batches { 1 } else { self.plan.samples_per_pixel - self.samples };
+            self.add(samples, (advance, &|| false))?;
         }
         Ok(())
     }
 
-    fn add(&mut self, samples: u32, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
+    /// Adds the replicas of an image that is made of them: all, or those that have begun before `ends` says that no other is to begin.
+    ///
+    /// # Errors
+    /// The errors of [`add_pass`](Self::add_pass).
+    pub fn add_replicas(
+        &mut self,
+        advance: &(dyn Fn(u64) + Sync),
+        ends: &(dyn Fn() -> bool + Sync),
+    ) -> Result<(), Failure> {
+        self.add(self.plan.samples_per_pixel, (advance, ends))
+    }
+
+    fn add(&mut self, samples: u32, watch: Watch<'_>) -> Result<(), Failure> {
         let plan = self.plan;
         debug_assert!(
             samples == plan.samples_per_pixel || plan.integrator.replicas().is_none(),
             "replicas are of the whole image"
         );
         match &mut self.canvases {
-            Canvases::Gray(radiant, canvas) => add(plan, radiant, canvas, samples, advance),
-            Canvases::Colour(radiant, canvas) => add(plan, radiant, canvas, samples, advance),
-            Canvases::Separate(channels) => {
-                channels.iter_mut().zip(["red", "green", "blue"]).try_for_each(|((radiant, canvas), name)| {
-                    add(plan, radiant, canvas, samples, advance).map_err(|failure| failure.within(name))
-                })
-            }
-        }?;
-        self.samples += samples;
-        Ok(())
+            Canvases::Gray(radiant, canvas) => add(plan, radiant, canvas, samples, watch),
+            Canvases::Colour(radiant, canvas) => add(plan, radiant, canvas, samples, watch),
+            Canvases::Separate(channels) => channels.iter_mut().zip(["red", "green", "blue"]).try_fold(
+                0,
+                |_, ((radiant, canvas), name)| {
+                    add(plan, radiant, canvas, samples, watch).map_err(|failure| failure.within(name))
+                },
+            ),
+        }
+        .map(|samples| self.samples = samples)
     }
 
     /// Statistics of the samples so far.
@@ -97,14 +110,19 @@ impl<'p> Painting<'p> {
     }
 }
 
+/// What is told how many samples were added, and what says that no other replica is to begin.
+type Watch<'a> = (&'a (dyn Fn(u64) + Sync), &'a (dyn Fn() -> bool + Sync));
+
+/// Adds a pass; gives the samples per pixel so far.
 fn add<C: Spectrum>(
     plan: &ScenePlan,
     radiant: &Radiant<C>,
     canvas: &mut Canvas<C>,
     samples: u32,
-    advance: &(dyn Fn(u64) + Sync),
-) -> Result<(), Failure> {
-    Draw { plan, radiant, seed: canvas.seed, advance }.add_pass(canvas, samples)
+    (advance, ends): Watch<'_>,
+) -> Result<u32, Failure> {
+    Draw { plan, radiant, seed: canvas.seed, advance, ends }.add_pass(canvas, samples)?;
+    Ok(canvas.samples)
 }
 
 /// Draws the image of a plan on the threads of the current pool. `advance` is told how many samples were added.

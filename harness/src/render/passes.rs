@@ -37,7 +37,7 @@ impl End {
     }
 }
 
-/// Conditions to stop before all is drawn, after a whole pass of one sample per pixel.
+/// Conditions to stop before all is drawn, after a whole pass of one sample per pixel, or a whole replica.
 #[derive(Debug)]
 pub(super) struct EarlyEnd {
     /// Time limit by the clock on the wall \[s\].
@@ -63,17 +63,21 @@ pub(super) fn paint<'p>(
         painting.complete(advance)?;
         return Ok(Painted { painting, seconds: start.elapsed().as_secs_f64(), end: End::Complete });
     };
+    let is_over = || limit.is_some_and(|limit| start.elapsed().as_secs_f64() >= limit);
     let mut seconds = 0.0;
     loop {
         let pass = Instant::now();
-        painting.add_pass(advance)?;
+        match plan.integrator.replicas() {
+            None => painting.add_pass(advance)?,
+            Some(_) => painting.add_replicas(advance, &|| stop.is_requested() || is_over())?,
+        }
         seconds += pass.elapsed().as_secs_f64();
         let end = if painting.is_complete() {
             End::Complete
         } else if stop.is_requested() {
             End::Interrupted
         } else if let Some(limit) = *limit
-            && start.elapsed().as_secs_f64() >= limit
+            && is_over()
         {
             End::TimeLimit(limit)
         } else {

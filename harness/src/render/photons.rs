@@ -23,8 +23,8 @@ impl<C: Spectrum> Draw<'_, C> {
         walk: &WalkPlan,
         count: u32,
     ) -> Result<(Batch<C>, Spent), Failure> {
-        let (layer, spent) =
-            self.layer(count, &|index, samples| self.replica(medium, walk, (index, samples)))?;
+        let replica = |index, samples| self.replica(medium, walk, (index, samples));
+        let (layer, spent) = self.layer(&self.replicas((0..count, count), &replica)?);
         Ok((Batch { replicas: Some(layer), ..Batch::none() }, spent))
     }
 
@@ -68,6 +68,6 @@ impl<C: Spectrum> Draw<'_, C> {
         pixels.iter_mut().for_each(|pixel| *pixel = *pixel * scale);
         let cpu_seconds = clock.elapsed().as_secs_f64();
         let cost = Spent { lookups: volume.medium.lookups(), cpu_seconds, truncated, ..Spent::default() };
-        Ok(Replica { pixels, samples, cost, chains: None })
+        Ok(Replica { number: index, pixels, samples, cost, chains: None, experience: None })
     }
 }

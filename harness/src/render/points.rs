@@ -30,14 +30,10 @@ pub(super) fn points<'r>(
         work::before_planning(spec, Budget::of(arguments.limits.budget))
             .map_err(|failure| input.within(failure.at(value)))?;
         let plan = ScenePlan::of(spec, media).map_err(|failure| input.within(failure.at(value)))?;
-        let replicas = match plan.integrator {
-            IntegratorPlan::PhotonTracer(_) => "photons come",
-            _ => "chains come",
-        };
-        if arguments.time_limit.is_some() && plan.integrator.replicas().is_some() {
-            return Err(Failure::refused(format!(
-                "--time-limit: {replicas} in replicas of the whole image, not in passes"
-            )));
+        if arguments.time_limit.is_some() && matches!(plan.integrator, IntegratorPlan::PhotonTracer(_)) {
+            return Err(Failure::refused(
+                "--time-limit: photons come in replicas of the whole image, not in passes",
+            ));
         }
         Ok(Point { value, spec, plan })
     };

@@ -44,7 +44,7 @@ const MOST_MEMORY: f64 = (1_u64 << 34) as f64;
 pub(super) enum Length {
     /// All samples are drawn.
     Whole,
-    /// It ends after a pass of one sample per pixel.
+    /// It ends after a pass of one sample per pixel, or the first replica.
     Limited,
 }
 
@@ -77,7 +77,12 @@ pub(super) fn check(
     (budget, length): (Budget, Length),
 ) -> Result<Work, Failure> {
     let [columns, rows] = plan.camera.resolution();
-    let samples = if length == Length::Limited { 1 } else { spec.samples_per_pixel };
+    let samples = match length {
+        Length::Whole => spec.samples_per_pixel,
+        Length::Limited => {
+            plan.integrator.replicas().map_or(1, |count| spec.samples_per_pixel.div_ceil(count))
+        }
+    };
     let pixels = f64::from(columns) * f64::from(rows);
     let paths = pixels * f64::from(samples);
     let because = |each: f64| format!("{columns} x {rows} pixels, {samples} samples of {each:.3e} each");

@@ -12,13 +12,13 @@ use crate::Failure;
 use crate::reader::Object;
 pub use experiment::{Experiment, Overrides};
 pub use scene::{
-    BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec, DirectionalSpec,
-    EnergyRedistributionSpec, EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec, GuidedSpec, IntegratorKind,
-    IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec, MutationKind, Over,
-    Particles, PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec, ResampledSpec, ReuseSpec,
-    SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind, ShapeSpec, SingleScatteringSpec, SphereSpec,
-    StepsSpec, Strategy, SurfaceSpec, ThicknessSpec, TracerSpec, TransmittanceSpec, TransportSpec,
-    VolumeSpec, VplSpec, WalkSpec,
+    Adaptation, BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ColourSpec, ComponentSpec,
+    DirectionalSpec, EnergyRedistributionSpec, EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec,
+    GuidedSpec, IntegratorKind, IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec,
+    MutationKind, Over, Particles, PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec,
+    ResampledSpec, ReuseSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind, ShapeSpec,
+    SingleScatteringSpec, SphereSpec, StagesSpec, StepsSpec, Strategy, SurfaceSpec, ThicknessSpec,
+    TracerSpec, TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };
 pub use sweep::{Request, Sweep};
 

@@ -8,6 +8,7 @@ mod exactly;
 mod extensions;
 mod freeflight;
 mod jittered_flight;
+mod metropolis;
 mod paths;
 mod phase;
 mod points;
@@ -139,6 +140,6 @@ impl Twin {
 pub fn twins() -> Vec<Twin> {
     joined!(
         twins of estimators, exactly, freeflight, jittered_flight, spectral, points, phase, paths, extensions, vpl,
-        bidirectional
+        bidirectional, metropolis
     )
 }

@@ -38,6 +38,6 @@ pub use propagation::Propagation;
 pub use proposal::StepSizes;
 pub use scattering::Scattering;
 pub use state::PathState;
-pub use target::{Named, NoMutation, PathTarget};
+pub use target::{Named, NoMutation, NotShares, PathTarget};
 pub use vertex::{PathEdge, PathSite, PathVertex, Towards};
 pub use world::{EdgeTransmittance, Met, PathWorld, View};

@@ -9,6 +9,7 @@ use fairflight_bidirectional::{Bidirectional, Exact, Subpath, Walking, Weigh};
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{AnalyticCosine, Bounds, Homogeneous, Line, LineThickness, PhaseFunction};
+use fairflight_metropolis::Mutation;
 use fairflight_metropolis::laws::Probe;
 use fairflight_metropolis::path::{
     Met, PathEdge, PathSite, PathState, PathVertex, PathWorld, StepSizes, View,
@@ -159,6 +160,25 @@ impl<'s> Paths<'s> {
         for (path, weight) in &all {
             each(path, *weight, source);
         }
+    }
+}
+
+pub type Boxed<'w> = Box<dyn Mutation<PathState> + 'w>;
+
+/// ln of the wrong f J over the right one.
+pub type Mistake = fn(&dyn PathWorld, &PathState) -> f64;
+
+/// A mutation with a mistake.
+pub struct Twin<'w> {
+    pub right: Boxed<'w>,
+    pub world: &'w dyn PathWorld,
+    pub mistake: Mistake,
+}
+
+impl Mutation<PathState> for Twin<'_> {
+    fn propose(&mut self, x: &PathState, y: &mut PathState, source: &mut dyn UniformSource) -> Option<f64> {
+        let ratio = self.right.propose(x, y, source)?;
+        Some(ratio + (self.mistake)(self.world, y) - (self.mistake)(self.world, x))
     }
 }
 

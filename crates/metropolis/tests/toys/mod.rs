@@ -1,44 +1,14 @@
 //! Targets on [0, 1) whose image is known, and the law of replicas.
 
-#![allow(dead_code, unreachable_pub)] // Each test file uses its part.
+#![allow(dead_code, unreachable_pub, unused_imports)] // Each test file uses its part.
 
-use fairflight_metropolis::{Film, Plan, Proposed, Splats, Target, Which};
+pub use fairflight_metropolis::laws::modes::{height as modes, image, integrand, pixel as half};
+use fairflight_metropolis::{Film, Plan, Proposed, Target, Which};
 use fairflight_sources::{Seeded, UniformSource, derive_seed};
 use fairflight_stats::{Moments, Reference, Verdict, judge};
 
 /// Seed of all laws.
 pub const SEED: u64 = 1;
-
-/// Two modes of unequal mass, far apart: centre, width, height. Small steps alone never cross.
-const MODES: [[f64; 3]; 2] = [[0.25, 0.06, 3.0], [0.75, 0.08, 1.0]];
-
-/// The height of the two modes together.
-pub fn modes(u: f64) -> f64 {
-    MODES.iter().map(|[centre, width, height]| height * (-0.5 * ((u - centre) / width).powi(2)).exp()).sum()
-}
-
-/// What the left half and the right half of the modes hold: the image, of two pixels. Midpoint rule, of which the error is far below rounding
-/// for functions that vanish at both ends.
-pub fn image() -> [f64; 2] {
-    const NODES: u32 = 100_000;
-    let mut halves = [0.0; 2];
-    for node in 0..NODES {
-        let u = (f64::from(node) + 0.5) / f64::from(NODES);
-        halves[usize::from(u >= 0.5)] += modes(u) / f64::from(NODES);
-    }
-    halves
-}
-
-/// Pixel of a variate: the left half or the right one.
-pub fn half(u: f64) -> [u32; 2] {
-    [u32::from(u >= 0.5), 0]
-}
-
-/// The modes as an integrand.
-pub fn integrand(splats: &mut Splats<f64>, source: &mut dyn UniformSource) {
-    let u = source.next_uniform();
-    splats.push(half(u), modes(u));
-}
 
 /// What a run deposits in the left pixel.
 pub fn left(run: impl FnOnce(&mut Film<'_, f64>)) -> f64 {

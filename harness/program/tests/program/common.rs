@@ -71,12 +71,15 @@ pub(crate) fn entries(folder: &Path) -> usize {
 pub(crate) fn endless(resolution: [u32; 2], folder: &Path) -> Running {
     let mut scene = scene();
     scene["camera"]["resolution"] = json!(resolution);
-    endless_of(scene, folder)
+    scene["samples_per_pixel"] = json!(ENDLESS);
+    started(&scene, folder)
 }
 
-/// Starts an image of this scene that never ends, in passes.
-pub(crate) fn endless_of(mut scene: Value, folder: &Path) -> Running {
-    scene["samples_per_pixel"] = json!(4_000_000_000_u32);
+/// Samples per pixel that nobody waits for.
+pub(crate) const ENDLESS: u32 = 4_000_000_000;
+
+/// Starts an image that may end early.
+pub(crate) fn started(scene: &Value, folder: &Path) -> Running {
     let mut child = Running::start(
         Command::new(env!("CARGO_BIN_EXE_harness"))
             .args(["render", "-", "--threads", "1", "--time-limit", "1000", "--out"])

@@ -1,6 +1,6 @@
 //! A person gives up in the middle of a report or an image. Signals are sent as on Unix.
 
-use crate::common::{Running, endless, endless_of, entries, names, scene, wait_for};
+use crate::common::{ENDLESS, Running, endless, entries, names, scene, started, wait_for};
 use fairflight_harness::image::Image;
 use serde_json::{Value, json};
 use std::fs;
@@ -87,34 +87,65 @@ fn an_interrupt_ends_whatever_light_paths_share_after_a_whole_pass() {
         json!({ "kind": "beam_radiance", "photons": 500, "radius": 0.1 }),
     ] {
         let root = tempfile::tempdir().expect("a temporary folder");
-        let folder = root.path();
         let mut scene: Value = serde_json::from_str(mixed).expect("a scene of ours");
         scene["camera"]["resolution"] = json!([20, 18]);
-        scene["integrator"] = integrator.clone();
-        let mut child = endless_of(scene.clone(), folder);
-        wait_for("temporary files", || entries(folder) >= 2);
-        std::thread::sleep(Duration::from_millis(200));
-        send("-INT", &child);
-        wait_for("the end", || child.try_wait().expect("a state").is_some());
-        let output = child.output();
-        assert_eq!(output.status.code(), Some(130), "{integrator}: {output:?}");
-        assert_eq!(names(folder), ["image.pfm", "statistics.json"], "{integrator}");
-        let drawn = statistics(folder)["image"]["samples_per_pixel"].as_u64().expect("a number");
-        let warning = format!("an interrupt ended the image after {drawn} of 4000000000 samples per pixel");
-        assert!(statistics(folder)["warnings"].to_string().contains(&warning), "{integrator}");
+        scene["integrator"] = integrator;
+        scene["samples_per_pixel"] = json!(ENDLESS);
+        let (drawn, _) = interrupted_image(&scene, root.path());
         // The image is that of so many passes.
-        let again = folder.join("again.pfm");
-        let mut same = Running::start(
-            Command::new(env!("CARGO_BIN_EXE_harness"))
-                .args(["render", "-", "--samples-per-pixel", &drawn.to_string(), "--out"])
-                .arg(&again)
-                .stdin(Stdio::piped()),
-        );
-        same.stdin.take().expect("a pipe").write_all(scene.to_string().as_bytes()).expect("it reads");
-        assert!(same.wait().expect("an end").success());
-        let [image, again] = [folder.join("image.pfm"), again].map(|path| fs::read(path).expect("a file"));
-        assert!(image == again, "{integrator}: another image");
+        scene["samples_per_pixel"] = json!(drawn);
+        is_image_of(&scene, root.path());
     }
+}
+
+#[test]
+fn an_interrupt_ends_chains_after_whole_replicas() {
+    let mut scene: Value =
+        serde_json::from_str(include_str!("../../../scenes/mixed.json")).expect("a scene of ours");
+    scene["camera"]["resolution"] = json!([20, 18]);
+    scene["integrator"] =
+        json!({ "kind": "metropolis", "space": "primary", "over": "path_tracer", "replicas": 1000 });
+    scene["samples_per_pixel"] = json!(200_000);
+    let root = tempfile::tempdir().expect("a temporary folder");
+    let (drawn, told) = interrupted_image(&scene, root.path());
+    assert_eq!(told["chains"]["replicas"], drawn / 200);
+    scene["samples_per_pixel"] = json!(drawn);
+    scene["integrator"]["replicas"] = json!(drawn / 200);
+    is_image_of(&scene, root.path());
+}
+
+/// Draws a scene, interrupts that after a while; the samples per pixel that were drawn, and the statistics.
+fn interrupted_image(scene: &Value, folder: &Path) -> (u64, Value) {
+    let mut child = started(scene, folder);
+    wait_for("temporary files", || entries(folder) >= 2);
+    std::thread::sleep(Duration::from_millis(200));
+    send("-INT", &child);
+    wait_for("the end", || child.try_wait().expect("a state").is_some());
+    let output = child.output();
+    let integrator = &scene["integrator"];
+    assert_eq!(output.status.code(), Some(130), "{integrator}: {output:?}");
+    assert_eq!(names(folder), ["image.pfm", "statistics.json"], "{integrator}");
+    let told = statistics(folder);
+    let drawn = told["image"]["samples_per_pixel"].as_u64().expect("a number");
+    let asked = &scene["samples_per_pixel"];
+    let warning = format!("an interrupt ended the image after {drawn} of {asked} samples per pixel");
+    assert!(told["warnings"].to_string().contains(&warning), "{integrator}");
+    (drawn, told)
+}
+
+/// Asserts that the image in a folder is that of a scene.
+fn is_image_of(scene: &Value, folder: &Path) {
+    let again = folder.join("again.pfm");
+    let mut same = Running::start(
+        Command::new(env!("CARGO_BIN_EXE_harness"))
+            .args(["render", "-", "--out"])
+            .arg(&again)
+            .stdin(Stdio::piped()),
+    );
+    same.stdin.take().expect("a pipe").write_all(scene.to_string().as_bytes()).expect("it reads");
+    assert!(same.wait().expect("an end").success());
+    let [image, again] = [folder.join("image.pfm"), again].map(|path| fs::read(path).expect("a file"));
+    assert!(image == again, "{}: another image", scene["integrator"]);
 }
 
 #[test]

@@ -10,11 +10,11 @@ mod volume;
 
 pub use colour::ColourSpec;
 pub use integrator::{
-    BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ComponentSpec, EnergyRedistributionSpec,
-    ExtensionSpec, GuidedSpec, IntegratorKind, IntegratorSpec, LineSplittingSpec, MetropolisSpec,
-    MutationKind, Over, Particles, PathTracerSpec, ResampledSpec, ReuseSpec, SamplingFieldSpec,
-    SingleScatteringSpec, StepsSpec, Strategy, ThicknessSpec, TracerSpec, TransmittanceSpec, TransportSpec,
-    VplSpec, WalkSpec,
+    Adaptation, BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ComponentSpec,
+    EnergyRedistributionSpec, ExtensionSpec, GuidedSpec, IntegratorKind, IntegratorSpec, LineSplittingSpec,
+    MetropolisSpec, MutationKind, Over, Particles, PathTracerSpec, ResampledSpec, ReuseSpec,
+    SamplingFieldSpec, SingleScatteringSpec, StagesSpec, StepsSpec, Strategy, ThicknessSpec, TracerSpec,
+    TransmittanceSpec, TransportSpec, VplSpec, WalkSpec,
 };
 pub use light::{DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec, LightSpec, PointSpec};
 pub use phase::{PhaseKind, PhaseSpec};

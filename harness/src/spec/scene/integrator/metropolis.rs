@@ -8,8 +8,9 @@ use crate::reader::kind::Among;
 use crate::reader::rule::{Maybe, Nullable, Positive, Rule, Whole};
 use crate::reader::{Node, Object};
 use crate::{Failure, keys, kind, words};
+use fairflight_metropolis::Importance;
 use fairflight_sources::{Layout, SmallStep};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// The space that chains move in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +65,9 @@ keys! {
         /// The integrator whose variates they are, in primary space: bidirectional, path_tracer, or multiplexed, which joins paths in one way each
         /// (hachisuka-2014).
         over: Option<Over> as Maybe<OverWord> = None,
-        /// The mutations of paths, in path space, each as probable; all by default, bidirectional with a closed form only.
-        mutations: Option<Vec<MutationKind>> as Maybe<Mutations> = None,
+        /// The mutations of paths, in path space: a list, each of their variants as probable, or an object with the share of each. All by default,
+        /// bidirectional with a closed form only.
+        mutations: Option<Vec<(MutationKind, f64)>> as Maybe<Mutations> = None,
         /// The order of variates: by the vertex that they are drawn for, or one after the other.
         rows: Layout as RowsWord = Layout::Rows,
         /// The probability of a step that draws all variates afresh; with 0 a chain stays in the mode where it starts, without a bias.
@@ -90,10 +92,52 @@ kind! {
         bootstrap: Option<u64> as Maybe<Whole<1, MOST>> = None,
         /// Chains of each replica.
         chains: u32 as Whole<1, MOST> = 1,
+        /// More of the chains where the image is noisy (hoberock-2010), as stages before found: { "stages": n, "floor": 0.1 }; null for brightness alone.
+        importance: Option<StagesSpec> as Nullable<Among> = None,
+        /// Sizes of small steps by pixel, in primary space (lai-2007): learnt by two halves of the replicas from each other, or not at all.
+        adaptation: Adaptation as AdaptationWord = Adaptation::None,
         /// The states of chains and their steps.
         steps: StepsSpec as Among,
     }
-    check |spec, object| spec.steps.check(object)
+    check MetropolisSpec::check
+}
+
+keys! {
+    /// Stages of replicas, of which each follows an importance that those before it taught.
+    pub StagesSpec {
+        /// Number of stages, which share the replicas evenly: at least two for each.
+        stages: u32 as Whole<2, 100> = 2,
+        /// The least importance of a pixel, in units of the mean importance.
+        floor: f64 as Positive = Importance::FLOOR,
+    }
+}
+
+/// Learning of sizes of steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Adaptation {
+    /// One size everywhere.
+    None,
+    /// Two halves of the replicas teach each other.
+    Crosswise,
+}
+
+words! {
+    /// Learning of sizes of steps.
+    pub(super) AdaptationWord for Adaptation {
+        "none" => Adaptation::None,
+        "crosswise" => Adaptation::Crosswise,
+    }
+}
+
+impl MetropolisSpec {
+    fn check(&self, object: &Object<'_>) -> Result<(), Failure> {
+        if self.adaptation == Adaptation::Crosswise && self.steps.space == Space::Path {
+            return Err(object
+                .required("adaptation")?
+                .refuse("crosswise needs space: primary: its sizes are those of steps of variates"));
+        }
+        self.steps.check(object)
+    }
 }
 
 kind! {
@@ -145,21 +189,54 @@ words! {
     }
 }
 
-/// A list of mutations, not empty.
+impl MutationKind {
+    /// Variants that share what the mutation is given: lens with distances kept and scaled, the two others towards camera and light.
+    #[must_use]
+    pub fn variants(self) -> f64 {
+        if matches!(self, Self::Lens | Self::Scattering | Self::Propagation) { 2.0 } else { 1.0 }
+    }
+}
+
+/// A list of mutations, not empty, or an object with their shares.
 #[derive(Debug)]
 pub(super) struct Mutations;
 
-impl Rule<Vec<MutationKind>> for Mutations {
-    fn read(node: &Node<'_>) -> Result<Vec<MutationKind>, Failure> {
-        let kinds: Vec<_> =
-            node.items()?.iter().map(<MutationWord as Rule<_>>::read).collect::<Result<_, _>>()?;
+impl Rule<Vec<(MutationKind, f64)>> for Mutations {
+    fn read(node: &Node<'_>) -> Result<Vec<(MutationKind, f64)>, Failure> {
+        let kinds: Vec<_> = if node.is_object() {
+            let object = node.object()?;
+            let given = MutationWord::WORDS
+                .iter()
+                .filter_map(|&(word, kind)| Some((kind, object.optional(word)?)))
+                .map(|(kind, share)| Ok((kind, share.positive()?)))
+                .collect::<Result<_, Failure>>()?;
+            object.finish()?;
+            given
+        } else {
+            let read = |item| <MutationWord as Rule<MutationKind>>::read(item);
+            let each = |item| read(item).map(|kind| (kind, kind.variants()));
+            node.items()?.iter().map(each).collect::<Result<_, _>>()?
+        };
         if kinds.is_empty() { Err(node.refuse("must name at least one mutation")) } else { Ok(kinds) }
     }
-    fn written(kinds: &Vec<MutationKind>) -> Value {
-        kinds.iter().map(<MutationWord as Rule<_>>::written).collect()
+    fn written(kinds: &Vec<(MutationKind, f64)>) -> Value {
+        let word = |kind| <MutationWord as Rule<_>>::written(kind);
+        if kinds.iter().all(|(kind, share)| *share == kind.variants()) {
+            return kinds.iter().map(|(kind, _)| word(kind)).collect();
+        }
+        let shares = kinds
+            .iter()
+            .map(|(kind, share)| (word(kind).as_str().unwrap_or_default().to_owned(), json!(share)));
+        Value::Object(shares.collect::<Map<_, _>>())
     }
     fn schema() -> Value {
-        json!({ "type": "array", "items": <MutationWord as Rule<MutationKind>>::schema(), "minItems": 1 })
+        let share = json!({ "type": "number", "exclusiveMinimum": 0 });
+        let shares: Map<_, _> =
+            MutationWord::WORDS.iter().map(|(word, _)| ((*word).to_owned(), share.clone())).collect();
+        json!({ "anyOf": [
+            { "type": "array", "items": <MutationWord as Rule<MutationKind>>::schema(), "minItems": 1 },
+            { "type": "object", "properties": shares, "additionalProperties": false, "minProperties": 1 },
+        ] })
     }
 }
 

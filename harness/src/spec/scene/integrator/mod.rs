@@ -17,7 +17,9 @@ pub use beam_radiance::BeamRadianceSpec;
 pub use bidirectional::{BidirectionalSpec, ThicknessSpec};
 pub use extension::{ExtensionSpec, GuidedSpec, ResampledSpec, ReuseSpec};
 pub use line_splitting::LineSplittingSpec;
-pub use metropolis::{EnergyRedistributionSpec, MetropolisSpec, MutationKind, Over, StepsSpec};
+pub use metropolis::{
+    Adaptation, EnergyRedistributionSpec, MetropolisSpec, MutationKind, Over, StagesSpec, StepsSpec,
+};
 pub use particle_tracer::{Particles, TracerSpec};
 pub use path_tracer::PathTracerSpec;
 pub use single_scattering::{SingleScatteringSpec, Strategy};
