@@ -94,8 +94,9 @@ fn a_long_file_says_why() {
 /// benches and examples. The number only falls, or rises by what a change of the program is worth, said where it is raised: 1,200 for the
 /// integrator `bidirectional`, its light image, its table of strategies, and its report; 840 for the extensions of `path_tracer` and for
 /// `beam_radiance`, their keys, refusals, maps and groups; 450 for the sections of the reports on both at equal time, and strategies without weights;
-/// 1,050 for `metropolis` and `energy_redistribution` in both spaces, their refusals, mutations and layer of replicas.
-const MOST_PRODUCT_LINES: usize = 33_500;
+/// 1,050 for `metropolis` and `energy_redistribution` in both spaces, their refusals, mutations and layer of replicas;
+/// 1,080 for the report on them: two modes in closed form, rows, mutations, equal time, resolution.
+const MOST_PRODUCT_LINES: usize = 34_570;
 
 #[test]
 fn the_harness_does_not_grow() {
