@@ -95,8 +95,8 @@ fn a_long_file_says_why() {
 /// integrator `bidirectional`, its light image, its table of strategies, and its report; 840 for the extensions of `path_tracer` and for
 /// `beam_radiance`, their keys, refusals, maps and groups; 450 for the sections of the reports on both at equal time, and strategies without weights;
 /// 1,050 for `metropolis` and `energy_redistribution` in both spaces, their refusals, mutations and layer of replicas;
-/// 1,080 for the report on them: two modes in closed form, rows, mutations, equal time, resolution.
-const MOST_PRODUCT_LINES: usize = 34_570;
+/// 1,100 for the report on them: two modes in closed form, rows, mutations, equal time, resolution.
+const MOST_PRODUCT_LINES: usize = 34_600;
 
 #[test]
 fn the_harness_does_not_grow() {

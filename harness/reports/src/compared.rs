@@ -114,6 +114,12 @@ pub(super) struct Entry {
 }
 
 impl Entry {
+    /// A sentence on a mean that is too far from that of the reference, in a case with a name.
+    pub(super) fn too_far(&self, case: &str) -> Option<String> {
+        // Of so few images the scatter has heavy tails: t of 7 degrees of freedom at 1e-6.
+        (self.z.abs() > 14.0).then(|| format!("{} in {case}: z = {:.1}", self.name, self.z))
+    }
+
     /// The error and the time of its image, below it.
     pub(super) fn lines(&self) -> Vec<String> {
         vec![
@@ -164,9 +170,7 @@ impl Compared {
 
     /// Methods at these places whose mean is too far from that of the reference.
     pub(super) fn unsound(&self, places: impl IntoIterator<Item = usize>) -> Vec<String> {
-        // Of so few images the scatter has heavy tails: t of 7 degrees of freedom at 1e-6.
-        let far = places.into_iter().map(|k| &self.entries[k]).filter(|entry| entry.z.abs() > 14.0);
-        far.map(|entry| format!("{} in {}: z = {:.1}", entry.name, self.scene.id, entry.z)).collect()
+        places.into_iter().filter_map(|k| self.entries[k].too_far(self.scene.id)).collect()
     }
 
     /// A row of images: the reference by a method, and the first `count` of the others.

@@ -1,6 +1,6 @@
 //! The findings of the report.
 
-use super::equal_time::{BIDIRECTIONAL, PRIMARY, better};
+use super::equal_time::{BIDIRECTIONAL, PRIMARY, better, judged};
 use super::rows::Row;
 use super::start;
 use crate::compared::Compared;
@@ -12,17 +12,17 @@ pub(super) fn summary(compared: &[Compared], rows: &[Row], start: &start::Study)
             |a: &usize, b: &usize| scene.entries[*a].cost.value.total_cmp(&scene.entries[*b].cost.value);
         (0..scene.entries.len()).min_by(order).unwrap_or_default()
     };
-    let best = compared.iter().map(|scene| {
+    let best = judged(compared).map(|scene| {
         let (k, id) = (least(scene), scene.scene.id);
         let name = scene.entries[k].name;
         match k {
             BIDIRECTIONAL => format!("{id} {name}"),
-            _ => format!("{id} {name} ({} times bidirectional)", scene.gain(k, BIDIRECTIONAL).words(1)),
+            _ => format!("{id} {name} ({} times bidirectional)", scene.gain(k, BIDIRECTIONAL).words(2)),
         }
     });
-    let ahead = compared.iter().filter(|scene| !better(scene).is_empty()).map(|scene| scene.scene.id);
+    let ahead = judged(compared).filter(|scene| !better(scene).is_empty()).map(|scene| scene.scene.id);
     let (ahead, best): (Vec<&str>, Vec<String>) = (ahead.collect(), best.collect());
-    let behind = compared.iter().flat_map(|scene| {
+    let behind = judged(compared).flat_map(|scene| {
         let loses = |&k: &usize| scene.gain(k, BIDIRECTIONAL).exceeds(1.0) == Some(false);
         (PRIMARY..scene.entries.len()).filter(loses).map(|k| {
             format!(
@@ -34,7 +34,6 @@ pub(super) fn summary(compared: &[Compared], rows: &[Row], start: &start::Study)
         })
     });
     let behind: Vec<String> = behind.collect();
-    let direct = |row: &Row| row.over_paths().words(2);
     let mut summary = vec![
         format!("Most efficient, 1/(MSE · CPU s): {}.", best.join("; ")),
         format!(
@@ -44,15 +43,20 @@ pub(super) fn summary(compared: &[Compared], rows: &[Row], start: &start::Study)
     ];
     if !behind.is_empty() {
         summary.push(format!(
-            "They lose to bidirectional path tracing where its samples find light as it is, so that steps which resemble each other say less: {}.",
+            "A chain finds light no faster than the samples that it starts from, and steps that resemble each other say less than samples do: they lose to bidirectional path \
+             tracing where that finds light as it is, or where chains are short and light is rare: {}.",
             behind.join("; ")
         ));
     }
-    if let (Some(thin), Some(dense)) = (rows.first(), rows.last()) {
+    let lowest = |row: &&Row| row.over_paths().interval[0];
+    let dense =
+        rows.iter().filter(|row| lowest(row).is_finite()).max_by(|a, b| lowest(a).total_cmp(&lowest(b)));
+    if let (Some(thin), Some(dense)) = (rows.first(), dense) {
+        let told = |row: &Row| format!("{} at σ_t = {}", row.over_paths().words(2), row.sigma_t);
         summary.push(format!(
-            "Where a lamp lights all, a chain over paths has {} of the efficiency of the paths themselves in thin haze, {} in dense.",
-            direct(thin),
-            direct(dense)
+            "Where a lamp lights all, the efficiency of a chain over paths is {} of that of the paths themselves, and at best {}.",
+            told(thin),
+            told(dense)
         ));
     }
     summary.push(start.summary());

@@ -41,8 +41,9 @@ fn of(run: &Run<'_>, scene: &Compared) -> Result<Vec<Curve>, Failure> {
         let mut variances = vec![Measured::normal(f64::NAN, f64::NAN); methods.len()];
         for k in [BIDIRECTIONAL].into_iter().chain(CHAINS) {
             let (name, integrator, samples) = methods[k].clone();
-            // As many samples in all: chains of one length.
-            let samples = run.samples(samples) * block * block;
+            // As many samples in all: chains of one length. The variance of independent ones does not depend on their number.
+            let fewer = if k == BIDIRECTIONAL { 4 } else { 1 };
+            let samples = run.samples(samples) * block * block / fewer;
             let seed = run.seed(format_args!("resolution/{}/{block}/{name}", scene.scene.id));
             variances[k] = exact.entry(run, (name, integrator), (samples, seed))?.variance;
         }
@@ -54,8 +55,8 @@ fn of(run: &Run<'_>, scene: &Compared) -> Result<Vec<Curve>, Failure> {
 }
 
 pub(super) fn section(study: &Study) -> Section {
-    let text = "Variance of one sample of bidirectional path tracing over that of one step of a chain, by the resolution of the image: the same number of samples in \
-         all, the same length of chains, and the reference of above, of which blocks of pixels are put together. A chain finds a mode no faster than \
+    let text = "Variance of one sample of bidirectional path tracing over that of one step of a chain, by the resolution of the image: the same number of steps in \
+         all, and the same length of chains, and the reference of above, of which blocks of pixels are put together. A chain finds a mode no faster than \
          independent samples do, but fills it: the more pixels a mode covers, the more a step is worth.";
     let panel = |(id, curves): &(&str, Vec<Curve>)| {
         let y = Axis::logarithmic("variance of bidirectional over that of chains [1]");
