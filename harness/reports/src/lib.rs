@@ -2,17 +2,20 @@
 
 mod bidirectional;
 mod command;
+mod compared;
 mod estimators;
 mod folder;
 mod free_flight;
 mod laws;
 mod looks;
 mod measured;
+mod metropolis;
 mod options;
 mod particle_tracing;
 mod registry;
 mod replicas;
 mod run;
+mod scenes;
 mod single_scattering;
 mod speed;
 mod stability;

@@ -2,7 +2,8 @@
 
 use super::run::{Finished, Run};
 use super::{
-    bidirectional, estimators, free_flight, particle_tracing, single_scattering, standard, virtual_lights,
+    bidirectional, estimators, free_flight, metropolis, particle_tracing, single_scattering, standard,
+    virtual_lights,
 };
 use fairflight_harness::Failure;
 
@@ -21,7 +22,7 @@ pub struct ReportKind {
 }
 
 /// All reports; the first is the default.
-pub const REPORTS: [ReportKind; 7] = [
+pub const REPORTS: [ReportKind; 8] = [
     ReportKind {
         name: "standard",
         about: "transmittance estimators against their closed forms",
@@ -63,6 +64,13 @@ pub const REPORTS: [ReportKind; 7] = [
         takes_volume: false,
         takes: ["2.3 min", "7 s"],
         study: |run| Finished::of(bidirectional::document(run)?),
+    },
+    ReportKind {
+        name: "metropolis",
+        about: "chains of paths: the start, rows of variates, mutations, equal time against independent samples, resolution",
+        takes_volume: false,
+        takes: ["6 min", "15 s"],
+        study: |run| Finished::of(metropolis::document(run)?),
     },
     ReportKind {
         name: "estimators",

@@ -8,6 +8,7 @@ use fairflight_harness::parallel::try_in_parallel;
 use fairflight_harness::plan::{ScenePlan, Spectra};
 use fairflight_harness::render::{Moments, StrategyShare, moments};
 use fairflight_harness::spec::{SceneOverrides, SceneSpec};
+use fairflight_metropolis::Acceptance;
 use fairflight_scene::EnvironmentMap;
 use fairflight_sources::named_seed;
 use fairflight_stats as stats;
@@ -125,6 +126,16 @@ impl Picture {
         self.means().iter().map(|[gray, ..]| *gray)
     }
 
+    /// Means of blocks of `side` x `side` pixels, gray, row by row.
+    fn blocks(&self, side: usize) -> Vec<f64> {
+        let ([width, height], pixels) = (self.resolution, self.means());
+        let block = |row: usize, column: usize| {
+            let rows = (row * side..(row + 1) * side).map(|y| &pixels[y * width + column * side..][..side]);
+            rows.flatten().map(|[gray, ..]| *gray).sum::<f64>() / (side * side) as f64
+        };
+        (0..height / side).flat_map(|row| (0..width / side).map(move |column| block(row, column))).collect()
+    }
+
     /// Look-ups per pixel, on average.
     pub(super) fn lookups_per_pixel(&self) -> f64 {
         self.moments.lookups() as f64 / self.means().len() as f64
@@ -146,6 +157,16 @@ pub(super) struct VirtualLights {
     pub(super) light_path_seconds: f64,
     /// The share of compensation vertices that lay where something was lost; NaN if none was tried.
     pub(super) share_inside: f64,
+}
+
+/// Steps of one kind, with 95 % intervals from independent images.
+#[derive(Clone, Debug)]
+pub(super) struct Moves {
+    pub(super) kind: &'static str,
+    /// Mean probability to accept one.
+    pub(super) acceptance: Measured,
+    /// Part of all accepted steps.
+    pub(super) share: Measured,
 }
 
 impl Replicas {
@@ -256,21 +277,41 @@ impl Replicas {
     /// The change of each block of `side` x `side` pixels from `other`, row by row, with its standard error from the scatter of pairs of
     /// images of the same seeds.
     pub(super) fn changes_of_blocks(&self, other: &Self, side: usize) -> Vec<(f64, f64)> {
-        let [width, height] = self.first().resolution();
-        let block = |image: &Picture, column: usize, row: usize| {
-            let pixels = image.means();
-            let rows = (row * side..(row + 1) * side).map(|y| &pixels[y * width + column * side..][..side]);
-            rows.flatten().map(|[gray, ..]| *gray).sum::<f64>() / (side * side) as f64
-        };
-        let mut blocks = Vec::new();
-        for row in 0..height / side {
-            for column in 0..width / side {
-                let pairs = self.images.iter().zip(&other.images);
-                let changes = pairs.map(|(a, b)| block(a, column, row) - block(b, column, row));
-                blocks.push(mean_and_error(&changes.collect::<Vec<_>>()));
+        let [ours, theirs] = [self, other].map(|of| of.blocks(side));
+        let changes = |k: usize| ours.iter().zip(&theirs).map(move |(a, b)| a[k] - b[k]).collect::<Vec<_>>();
+        (0..ours[0].len()).map(|k| mean_and_error(&changes(k))).collect()
+    }
+
+    /// Means of blocks of each image.
+    fn blocks(&self, side: usize) -> Vec<Vec<f64>> {
+        self.images.iter().map(|image| image.blocks(side)).collect()
+    }
+
+    /// The mean of all images in blocks of `side` x `side` pixels, gray, and its squared error, from the scatter of the images.
+    pub(super) fn mean_of_blocks(&self, side: usize) -> (Vec<f64>, f64) {
+        let blocks = self.blocks(side);
+        let count = blocks[0].len();
+        let all = (0..count).map(|k| mean_and_error(&blocks.iter().map(|of| of[k]).collect::<Vec<_>>()));
+        let (means, errors): (Vec<f64>, Vec<f64>) = all.unzip();
+        (means, errors.iter().map(|error| error * error).sum::<f64>() / count as f64)
+    }
+
+    /// Steps of chains by their kind: the mean probability to accept one, and their part in all that were accepted; empty without chains.
+    pub(super) fn moves(&self) -> Vec<Moves> {
+        let accepted =
+            |image: &Picture| image.moments.steps().iter().map(|(_, steps)| steps.accepted).sum::<f64>();
+        let of_kind = |(place, &(kind, _)): (usize, &(&'static str, Acceptance))| {
+            let of_images = |of: &dyn Fn(&Picture, Acceptance) -> f64| {
+                let each = self.images.iter().map(|image| of(image, image.moments.steps()[place].1));
+                Measured::mean(&each.collect::<Vec<_>>())
+            };
+            Moves {
+                kind,
+                acceptance: of_images(&|_, steps| steps.mean().unwrap_or(f64::NAN)),
+                share: of_images(&|image, steps| steps.accepted / accepted(image)),
             }
-        }
-        blocks
+        };
+        self.first().moments.steps().iter().enumerate().map(of_kind).collect()
     }
 
     /// What the images told of their virtual point lights, if they had any.

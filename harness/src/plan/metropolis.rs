@@ -16,6 +16,7 @@ use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{Integrator, PathTracer};
 use fairflight_scene::{Geometry, Segment, Spectrum, Surfaces};
 use fairflight_sources::{Layout, Seeded, SmallStep, UniformSource};
+use std::sync::OnceLock;
 
 /// Metropolis sampling whose parameters are checked.
 #[derive(Debug)]
@@ -29,6 +30,8 @@ pub struct MetropolisPlan {
     large_step: f64,
     small_step: SmallStep,
     first_order: u32,
+    /// The light of each length by a pilot of the first replica that asks: the same for all, which no law asks for.
+    light_by_length: OnceLock<Vec<f64>>,
     /// The rule of what chains start from.
     pub(crate) starts: ChainStarts,
     /// Independent images, at most one for each sample of a pixel.
@@ -123,6 +126,7 @@ impl MetropolisPlan {
             large_step: spec.large_step,
             small_step: spec.step,
             first_order: spec.first_order(),
+            light_by_length: OnceLock::new(),
             starts,
             replicas: spec.replicas.unwrap_or(REPLICAS),
             is_asked_for: spec.replicas.is_some(),
@@ -228,8 +232,8 @@ impl MetropolisPlan {
                 Ok(Walked { truncated: integrand.integrator().truncated(), experience })
             }
             Some(Over::Multiplexed) => {
-                // The same for all replicas, which no law asks for.
-                let light = FromBothEnds::new(joined()).light_by_length(LENGTH_PILOT, &mut Seeded::new(0));
+                let pilot = || FromBothEnds::new(joined()).light_by_length(LENGTH_PILOT, &mut Seeded::new(0));
+                let light = self.light_by_length.get_or_init(pilot);
                 let seen = light.get(self.first_order as usize - 1..).unwrap_or_default();
                 let lengths = Lengths::new(self.first_order, seen, TAIL)
                     .or_else(|_| Lengths::new(self.first_order, &[], TAIL))

@@ -7,6 +7,7 @@ use crate::estimator::Preparation;
 use crate::image::Image;
 use crate::plan::{IntegratorPlan, ScenePlan, Tally};
 use crate::result::{Provenance, number};
+use fairflight_metropolis::Acceptance;
 use fairflight_scene::Spectrum;
 use serde::Serialize;
 
@@ -330,6 +331,11 @@ impl Moments {
             variance: found.variance,
         })
         .collect()
+    }
+
+    /// Steps of chains by their kind; empty for an integrator without any.
+    pub fn steps(&self) -> &[(&'static str, Acceptance)] {
+        self.chains.as_ref().map_or(&[], |chains| &chains.steps)
     }
 
     /// The share of compensation vertices that lay where something was lost; `None` if none was tried.

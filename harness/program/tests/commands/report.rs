@@ -112,6 +112,19 @@ fn the_report_on_bidirectional_path_tracing_finds_its_gain_and_no_broken_law() {
 }
 
 #[test]
+fn the_report_on_chains_has_its_sections_and_finds_no_bias() {
+    let (results, ledger) = document("metropolis", "2");
+    let [a3, r6] = &ledger[..] else { panic!("{ledger:?}") };
+    assert_eq!([a3, r6].map(|row| row[0].as_str()), ["A3", "R6"]);
+    assert_eq!(a3[1], "holds", "{a3:?}");
+    assert_ne!(r6[1], "does_not_hold", "{r6:?}");
+    assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
+    let sections: Vec<&str> =
+        results["sections"].as_array().expect("sections").iter().filter_map(|s| s["id"].as_str()).collect();
+    assert_eq!(sections, ["equal-time", "resolution", "mutations", "rows", "start"]);
+}
+
+#[test]
 fn what_cannot_be_written_is_said_before_anything_is_measured() {
     let parent = tempfile::tempdir().expect("a temporary folder");
     let file = parent.path().join("file");

@@ -1,8 +1,9 @@
 //! A1, L1 and R5 of the ledger, and the findings of the report.
 
-use super::equal_time::Compared;
 use super::point::Point;
+use crate::compared::Compared;
 use crate::laws::Laws;
+use crate::measured::Measured;
 use fairflight_document::{Cell, Claim, ClaimVerdict, Section, Table};
 
 /// The law of weights, scene by scene.
@@ -68,7 +69,7 @@ pub(super) fn l1(compared: &[Compared]) -> Claim {
     let indirect: Vec<Option<bool>> = compared
         .iter()
         .filter(|scene| scene.scene.is_indirect)
-        .map(|scene| scene.gain().exceeds(1.0))
+        .map(|scene| gain(scene).exceeds(1.0))
         .collect();
     let verdict = if indirect.contains(&Some(false)) {
         ClaimVerdict::HoldsUnder
@@ -86,13 +87,18 @@ pub(super) fn l1(compared: &[Compared]) -> Claim {
 }
 
 fn gains(compared: &[Compared]) -> String {
-    let gain = |scene: &Compared| format!("{} {}", scene.scene.id, scene.gain().words(2));
-    compared.iter().map(gain).collect::<Vec<_>>().join(", ")
+    let words = |scene: &Compared| format!("{} {}", scene.scene.id, gain(scene).words(2));
+    compared.iter().map(words).collect::<Vec<_>>().join(", ")
+}
+
+/// The efficiency, 1/(MSE · CPU seconds), over that of path tracing.
+fn gain(scene: &Compared) -> Measured {
+    scene.gain(1, 0)
 }
 
 /// The findings, in words.
 pub(super) fn summary(compared: &[Compared], point: &Point) -> Vec<String> {
-    let prices = compared.iter().map(Compared::price);
+    let prices = compared.iter().map(|scene| scene.entries[1].seconds / scene.entries[0].seconds);
     let [low, high] =
         prices.fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], price| [low.min(price), high.max(price)]);
     let [paths, both] = point.growth();

@@ -1,9 +1,10 @@
 //! A2: extensions of the path tracer at equal cost, where light is hard to find and where it comes from everywhere.
 
-use super::equal_time::{Compared, Exact};
-use super::scenes::{SCENES, UNIFORM};
+use super::{SCENES, equal_time};
+use crate::compared::Compared;
 use crate::measured::Measured;
 use crate::run::Run;
+use crate::scenes::UNIFORM_SKY;
 use fairflight_document::{Cell, Claim, ClaimVerdict, Section, Table};
 use fairflight_harness::Failure;
 use serde_json::{Value, json};
@@ -50,13 +51,13 @@ pub(super) struct Extended {
 
 pub(super) fn study(run: &Run<'_>, compared: &[Compared]) -> Result<Vec<Extended>, Failure> {
     let seed = |scene: &str, name: &str| run.seed(format_args!("extensions/{scene}/{name}"));
-    let exact = Exact::of(run, &UNIFORM)?;
-    let plain = (run.samples(SAMPLES), seed(UNIFORM.id, "path tracing"));
+    let exact = equal_time::exact(run, &UNIFORM_SKY)?;
+    let plain = (run.samples(SAMPLES), seed(UNIFORM_SKY.id, "path tracing"));
     let plain = exact.entry(run, ("path tracing", json!({ "kind": "path_tracer" })), plain)?;
     let lit = compared.iter().filter(|scene| scene.scene.id != LEFT_OUT);
     let lit = lit.map(|scene| (scene.scene.id, &scene.exact, &scene.entries[0]));
     let mut rows = Vec::new();
-    for (scene, exact, plain) in lit.chain([(UNIFORM.id, &exact, &plain)]) {
+    for (scene, exact, plain) in lit.chain([(UNIFORM_SKY.id, &exact, &plain)]) {
         for (name, integrator, samples) in methods() {
             let entry = exact.entry(run, (name, integrator), (run.samples(samples), seed(scene, name)))?;
             let gain = plain.cost.over(&entry.cost);
@@ -80,7 +81,7 @@ pub(super) fn section(rows: &[Extended]) -> Section {
     let text = format!(
         "Scenes, errors, intervals and references as above, without {LEFT_OUT}, nearly all of whose variance is in paths that few images meet; the last is {}: directions differ in nothing there but by surfaces and the ends of the medium. \
          CPU times hold the tracing of photons. Variance: mean squared error of one sample.",
-        UNIFORM.words
+        UNIFORM_SKY.words
     );
     let table = Table::of(
         ["extensions-table", "Extensions of the path tracer, over the path tracer", ""],
@@ -105,7 +106,7 @@ pub(super) fn a2(rows: &[Extended]) -> Claim {
     let (mut verdicts, mut words) = (Vec::new(), Vec::new());
     for (name, ..) in methods() {
         let (even, lit): (Vec<&Extended>, Vec<&Extended>) =
-            rows.iter().filter(|row| row.name == name).partition(|row| row.scene == UNIFORM.id);
+            rows.iter().filter(|row| row.name == name).partition(|row| row.scene == UNIFORM_SKY.id);
         let exceeds = |row: &&Extended| row.gain.exceeds(1.0) == Some(true);
         verdicts.push(lit.iter().any(exceeds));
         let best = lit.iter().max_by(|a, b| a.gain.interval[0].total_cmp(&b.gain.interval[0]));

@@ -4,36 +4,40 @@ mod claims;
 mod equal_time;
 mod extensions;
 mod point;
-mod scenes;
 mod strategies;
 
 use crate::laws::Laws;
 use crate::run::Run;
+use crate::scenes::{BULB, DOOR, FIXTURE, MIXED, Scene, VOLUME_CAUSTIC};
 use fairflight_document::Document;
 use fairflight_harness::Failure;
-use scenes::SCENES;
 
+/// Scenes of which bidirectional path tracing is to show something.
+const SCENES: [Scene; 5] = [BULB, VOLUME_CAUSTIC, DOOR, FIXTURE, MIXED];
 /// The part of the catalogue whose law is that weights sum to one.
 const WEIGHTS: &str = "bidirectional/partition/";
 
+/// Columns and rows of the images.
+fn side(run: &Run<'_>) -> u32 {
+    run.quick_or(12, 32)
+}
+
 /// Measures the report, on the threads of the current pool.
 pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
-    let scenes = SCENES.len() as u64;
     let sections = point::STEPS + strategies::STEPS + extensions::steps();
-    run.expect(scenes * equal_time::STEPS + sections + Laws::steps(WEIGHTS));
+    run.expect(equal_time::STEPS + sections + Laws::steps(WEIGHTS));
     let compared = SCENES.iter().map(|scene| equal_time::study(run, scene)).collect::<Result<Vec<_>, _>>()?;
     let extended = extensions::study(run, &compared)?;
     let point = point::study(run)?;
     let triangle = strategies::study(run)?;
     let laws = Laws::study(run, WEIGHTS);
-    let unsound = compared.iter().flat_map(equal_time::Compared::unsound).chain(laws.unsound()).collect();
-    let gallery = compared.iter().map(equal_time::Compared::row).collect();
+    let unsound = compared.iter().flat_map(equal_time::unsound).chain(laws.unsound()).collect();
     Ok(Document {
         summary: claims::summary(&compared, &point),
         claims: vec![claims::a1(&laws), extensions::a2(&extended), claims::l1(&compared), claims::r5(&laws)],
         unsound,
         sections: vec![
-            equal_time::section(run, &compared, gallery),
+            equal_time::section(run, &compared),
             extensions::section(&extended),
             point.section,
             strategies::section(&compared, triangle),

@@ -1,9 +1,9 @@
 //! A point light in a medium: a second moment that only weighted connections have.
 
-use super::scenes::POINT;
 use crate::measured::Measured;
 use crate::replicas::Subject;
 use crate::run::Run;
+use crate::scenes::POINT;
 use fairflight_document::{Axis, Chart, Curve, Section};
 use fairflight_harness::Failure;
 use serde_json::json;

@@ -1,15 +1,16 @@
 //! The strategies: the share of light that each finds, its variance, and what it sees.
 
-use super::equal_time::Compared;
-use super::scenes::SCENES;
+use super::side;
+use crate::compared::Compared;
 use crate::run::Run;
+use crate::scenes::{FIXTURE, Scene};
 use fairflight_document::{Cell, Gallery, Picture, Section, Table};
 use fairflight_harness::Failure;
 use fairflight_harness::render::StrategyShare;
 use serde_json::json;
 
 /// The scene of the triangle: no smooth surface is in it, so that every strategy finds light of every length.
-const SHOWN: &str = "fixture";
+const SHOWN: Scene = FIXTURE;
 /// Edges of the longest paths whose strategies are shown.
 const LONGEST: u32 = 4;
 /// Strategies of paths of 2 to [`LONGEST`] edges, weighted and alone.
@@ -21,8 +22,7 @@ type Rows = Vec<(String, Vec<Picture>)>;
 
 /// The triangle of strategies of one scene: two rows for each length of paths, with the same variates.
 pub(super) fn study(run: &Run<'_>) -> Result<Rows, Failure> {
-    let scene = SCENES.iter().find(|scene| scene.id == SHOWN).expect("a scene of the report");
-    let subject = scene.subject(run)?;
+    let subject = SHOWN.subject(side(run))?;
     let mut rows = Vec::new();
     for edges in 2..=LONGEST {
         for (id, words, weighted) in [("strategy", "weighted", true), ("alone", "each alone", false)] {
@@ -36,7 +36,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Rows, Failure> {
                 let mean = images.mean_of_images().0;
                 let lines = vec![format!("mean {mean:.2e}"), format!("variance {variance:.1e}")];
                 let label = format!("s = {s}, t = {t}");
-                pictures.push(images.picture(format!("{id}-{s}-{t}"), label, lines, 4.0 * scene.exposure));
+                pictures.push(images.picture(format!("{id}-{s}-{t}"), label, lines, 4.0 * SHOWN.exposure));
                 run.advance();
             }
             rows.push((format!("{edges} edges, {words}"), pictures));
@@ -45,8 +45,13 @@ pub(super) fn study(run: &Run<'_>) -> Result<Rows, Failure> {
     Ok(rows)
 }
 
+/// Light by strategy, as bidirectional path tracing found it.
+fn strategies(scene: &Compared) -> Vec<StrategyShare> {
+    scene.exact.images.first().strategies()
+}
+
 pub(super) fn section(compared: &[Compared], triangle: Rows) -> Section {
-    let title = format!("Light by strategy in {SHOWN}, two stops brighter");
+    let title = format!("Light by strategy in {}, two stops brighter", SHOWN.id);
     let section = Section::new("strategies", "Strategies and what they find")
         .with(
             "Contributions of s vertices from a light and t from the camera: weighted, and divided by their weights, as each strategy finds light alone. \
@@ -58,7 +63,7 @@ pub(super) fn section(compared: &[Compared], triangle: Rows) -> Section {
         .with(Gallery::of_images("strategies-images", &title, triangle));
     let rows: Vec<(&str, StrategyShare)> = compared
         .iter()
-        .flat_map(|scene| scene.strategies().into_iter().map(move |told| (scene.scene.id, told)))
+        .flat_map(|scene| strategies(scene).into_iter().map(move |told| (scene.scene.id, told)))
         .filter(|(_, told)| told.share.abs() >= 1e-3)
         .collect();
     let count =

@@ -1,0 +1,37 @@
+//! The report on chains of paths: antwerpen-2011 chapter 6 and raab-2008 4.4, measured.
+
+mod claims;
+mod equal_time;
+mod mutations;
+mod resolution;
+mod rows;
+mod start;
+mod toy;
+
+use crate::run::Run;
+use fairflight_document::Document;
+use fairflight_harness::Failure;
+
+/// Measures the report, on the threads of the current pool.
+pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
+    run.expect(start::STEPS + rows::STEPS + equal_time::STEPS + resolution::STEPS);
+    let start = start::study(run);
+    let rows = rows::study(run)?;
+    let compared = equal_time::study(run)?;
+    let resolution = resolution::study(run, &compared)?;
+    let unsound = compared.iter().flat_map(|scene| scene.unsound(0..scene.entries.len()));
+    Ok(Document {
+        summary: claims::summary(&compared, &rows, &start),
+        claims: vec![start.a3(), rows::r6(&rows)],
+        unsound: start.unsound().into_iter().chain(rows::unsound(&rows)).chain(unsound).collect(),
+        sections: vec![
+            equal_time::section(run, &compared),
+            resolution::section(&resolution),
+            mutations::section(&compared),
+            rows::section(run, &rows),
+            start.section(run),
+        ],
+        hero: Some("mirror-room-time".to_owned()),
+        ..run.document("Chains of paths in media")
+    })
+}
