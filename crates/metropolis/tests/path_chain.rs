@@ -161,6 +161,7 @@ fn inverted_lens<'s>(stage: &Stage<'s>) -> Vec<Named<'s>> {
 
 #[test]
 fn whole_replicas_find_a_wrong_jacobian() {
+    // Expected |z| 64.
     let scene = in_pixels(hall());
     let right = judged("lens", (&scene, middle), lens);
     assert_eq!(right.sound, Some(true), "{}", right.reason);
