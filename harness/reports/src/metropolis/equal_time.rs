@@ -67,13 +67,6 @@ pub(super) fn judged(compared: &[Compared]) -> impl Iterator<Item = &Compared> {
     compared.iter().filter(|scene| scene.scene.id != NOT_JUDGED)
 }
 
-/// Means that are too far from that of the reference: of chains only those above it. Below it images that all miss a rare mode agree with each other.
-pub(super) fn unsound(scene: &Compared) -> Vec<String> {
-    let above = scene.entries[PRIMARY..].iter().filter(|entry| entry.z > 0.0);
-    let chains = above.filter_map(|entry| entry.too_far(scene.scene.id));
-    scene.unsound([PATH_TRACING, BIDIRECTIONAL]).into_iter().chain(chains).collect()
-}
-
 /// Chains that are better than both parents at equal time, by 95 % intervals.
 pub(super) fn better(scene: &Compared) -> Vec<&'static str> {
     let is_better = |&k: &usize| {
