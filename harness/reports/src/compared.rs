@@ -120,6 +120,11 @@ impl Entry {
         (self.z.abs() > 14.0).then(|| format!("{} in {case}: z = {:.1}", self.name, self.z))
     }
 
+    /// The same where the mean lies above: below it, images that all miss a rare mode agree with each other.
+    pub(super) fn too_bright(&self, case: &str) -> Option<String> {
+        self.too_far(case).filter(|_| self.z > 0.0)
+    }
+
     /// The error and the time of its image, below it.
     pub(super) fn lines(&self) -> Vec<String> {
         vec![

@@ -69,7 +69,7 @@ pub const REPORTS: [ReportKind; 8] = [
         name: "metropolis",
         about: "chains of paths: the start, rows of variates, mutations, equal time against independent samples, resolution",
         takes_volume: false,
-        takes: ["6 min", "15 s"],
+        takes: ["5.3 min", "5 s"],
         study: |run| Finished::of(metropolis::document(run)?),
     },
     ReportKind {

@@ -19,7 +19,9 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
     let rows = rows::study(run)?;
     let compared = equal_time::study(run)?;
     let resolution = resolution::study(run, &compared)?;
-    let unsound = compared.iter().flat_map(|scene| scene.unsound(0..scene.entries.len()));
+    let unsound = compared
+        .iter()
+        .flat_map(|scene| scene.entries.iter().filter_map(|entry| entry.too_bright(scene.scene.id)));
     Ok(Document {
         summary: claims::summary(&compared, &rows, &start),
         claims: vec![start.a3(), rows::r6(&rows)],

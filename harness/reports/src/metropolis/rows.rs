@@ -87,11 +87,11 @@ fn row(run: &Run<'_>, sigma_t: f64) -> Result<Row, Failure> {
     })
 }
 
-/// Means that are not those of the reference.
+/// Means that are too far above that of the reference.
 pub(super) fn unsound(rows: &[Row]) -> Vec<String> {
     let far = rows.iter().flat_map(|row| {
         let entries = [&row.independent, &row.flat, &row.rows];
-        entries.into_iter().filter_map(|entry| entry.too_far(&format!("σ_t = {}", row.sigma_t)))
+        entries.into_iter().filter_map(|entry| entry.too_bright(&format!("σ_t = {}", row.sigma_t)))
     });
     far.collect()
 }
