@@ -1,6 +1,6 @@
 //! The exponential.
 
-use crate::parts::{LN_2, nearest, polynomial, power_of_two, two_sum};
+use crate::parts::{LN_2, each, nearest, polynomial, power_of_two, two_sum};
 use std::f64::consts::LOG2_E;
 
 /// Coefficients of P = (2 − r (e^r + 1)/(e^r − 1))/r² + …, an even function of r, for |r| ≤ ln 2/2: the minimax polynomial of fdlibm's `e_exp.c` (Sun
@@ -46,6 +46,12 @@ pub(crate) fn near(x: f64) -> f64 {
     of_rest(rest) * power_of_two(bits)
 }
 
+/// The same in all lanes.
+#[inline(always)]
+pub(crate) fn near_lanes<const N: usize>(x: &[f64; N]) -> [f64; N] {
+    each(x, near)
+}
+
 #[inline(always)]
 pub(crate) fn is_near(x: f64) -> bool {
     x.abs() < 708.0
@@ -75,6 +81,12 @@ pub(crate) fn near_m1(x: f64) -> f64 {
     let scale = power_of_two(bits);
     let (sum, rounded) = two_sum(scale - 1.0, scale * r);
     sum + (rounded - scale * lost)
+}
+
+/// The same in all lanes.
+#[inline(always)]
+pub(crate) fn near_m1_lanes<const N: usize>(x: &[f64; N]) -> [f64; N] {
+    each(x, near_m1)
 }
 
 #[inline(always)]

@@ -3,7 +3,7 @@
 use crate::{exponential, logarithm, sine};
 
 macro_rules! functions {
-    ($($(#[$docs:meta])* $name:ident = $module:ident, $is_near:ident, $near:ident, $far:ident;)*) => {
+    ($($(#[$docs:meta])* $name:ident = $module:ident, $is_near:ident, $near:ident, $lanes:ident, $far:ident;)*) => {
         $(
             $(#[$docs])*
             #[inline(always)]
@@ -21,10 +21,9 @@ macro_rules! functions {
                 #[inline(always)]
                 #[must_use]
                 pub fn $name<const N: usize>(x: &[f64; N]) -> [f64; N] {
-                    let mut values = [0.0; N];
+                    let mut values = $module::$lanes(x);
                     let mut all_near = true;
-                    for (value, &x) in values.iter_mut().zip(x) {
-                        *value = $module::$near(x);
+                    for &x in x {
                         all_near &= $module::$is_near(x);
                     }
                     if !all_near {
@@ -39,13 +38,13 @@ macro_rules! functions {
 
 functions! {
     /// ln x: −∞ of 0, and no number of those below.
-    ln = logarithm, is_near, near, far;
+    ln = logarithm, is_near, near, near_lanes, far;
     /// ln(1 + x): accurate where x is small, −∞ of −1, and no number of those below.
-    ln_1p = logarithm, is_near_1p, near_1p, far_1p;
+    ln_1p = logarithm, is_near_1p, near_1p, near_1p_lanes, far_1p;
     /// e^x: 0 below −745.2, ∞ above 709.8.
-    exp = exponential, is_near, near, far;
+    exp = exponential, is_near, near, near_lanes, far;
     /// e^x − 1: accurate where x is small.
-    exp_m1 = exponential, is_near_m1, near_m1, far_m1;
+    exp_m1 = exponential, is_near_m1, near_m1, near_m1_lanes, far_m1;
 }
 
 /// The lanes that the common range does not hold.

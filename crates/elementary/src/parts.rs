@@ -4,9 +4,9 @@
 const ROUND: f64 = 6_755_399_441_055_744.0;
 /// 2^52, whose lowest bits are an integer.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
-const EXPONENT_BITS: u32 = 52;
-const BIAS: u64 = 1023;
-const EXPONENT: u64 = 0x7FF0_0000_0000_0000;
+pub(crate) const EXPONENT_BITS: u32 = 52;
+pub(crate) const BIAS: u64 = 1023;
+pub(crate) const EXPONENT: u64 = 0x7FF0_0000_0000_0000;
 
 /// ln 2 in two parts, of which the first has 33 bits: its product with an exponent is exact.
 pub(crate) const LN_2: [f64; 2] = [6.931_471_803_691_238_164_90e-1, 1.908_214_929_270_587_700_02e-10];
@@ -24,15 +24,20 @@ pub(crate) fn power_of_two(k: u64) -> f64 {
     f64::from_bits((k << EXPONENT_BITS).wrapping_add(BIAS << EXPONENT_BITS))
 }
 
-/// x = 2^k m with m in \[√½, √2), of a normal number above 0: k and m.
+/// The exponent that the bits of a number above 0 begin with.
 #[inline(always)]
-pub(crate) fn exponent_and_mantissa(x: f64) -> (f64, f64) {
-    /// The bits of 1 less those of √½: moves the border between exponents there.
-    const TO_ROOT: u64 = 0x0009_5F61_9980_C433;
-    let moved = x.to_bits().wrapping_add(TO_ROOT);
-    let k = f64::from_bits((moved >> EXPONENT_BITS) | WHOLE.to_bits()) - (WHOLE + BIAS as f64);
-    let mantissa = x.to_bits().wrapping_sub((moved & EXPONENT).wrapping_sub(BIAS << EXPONENT_BITS));
-    (k, f64::from_bits(mantissa))
+pub(crate) fn exponent(bits: u64) -> f64 {
+    f64::from_bits((bits >> EXPONENT_BITS) | WHOLE.to_bits()) - (WHOLE + BIAS as f64)
+}
+
+/// A function of each lane.
+#[inline(always)]
+pub(crate) fn each<const N: usize>(x: &[f64; N], function: impl Fn(f64) -> f64) -> [f64; N] {
+    let mut values = [0.0; N];
+    for (value, &x) in values.iter_mut().zip(x) {
+        *value = function(x);
+    }
+    values
 }
 
 /// a + b and what rounding took off it (knuth-1969 4.2.2, theorem B).
@@ -58,16 +63,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exponents_and_mantissas_of_either_side() {
-        for (x, k, m) in [
-            (1.0, 0.0, 1.0),
-            (1.5, 1.0, 0.75),
-            (0.7, -1.0, 1.4),
-            (0.75, 0.0, 0.75),
-            (f64::MAX, 1024.0, f64::MAX / 2.0_f64.powi(1023) / 2.0),
-            (f64::MIN_POSITIVE, -1022.0, 1.0),
-        ] {
-            assert_eq!(exponent_and_mantissa(x), (k, m), "{x}");
+    fn exponents_of_numbers() {
+        for (x, k) in [(1.0, 0.0), (1.9, 0.0), (0.7, -1.0), (f64::MAX, 1023.0), (f64::MIN_POSITIVE, -1022.0)]
+        {
+            assert_eq!(exponent(f64::to_bits(x)), k, "{x}");
         }
     }
 

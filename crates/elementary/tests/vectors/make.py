@@ -1,6 +1,6 @@
-"""Makes the vectors: arguments, correctly rounded values, and what rounding took off them (mpmath, 60 digits).
+"""Makes the vectors: arguments, correctly rounded values, and what rounding took off them (mpmath, 60 digits); and the table of logarithms.
 
-    python3 make.py        writes FUNCTION.txt beside itself
+    python3 make.py        writes FUNCTION.txt beside itself, and src/table.rs
 """
 
 import math
@@ -41,7 +41,46 @@ def logarithmic(random, low, high, many):
     return [math.exp(random.uniform(math.log(low), math.log(high))) for _ in range(many)]
 
 
+LEAST_MANTISSA = 0x3FE6000000000000
+ENTRIES = 128
+
+
+def number(of):
+    return struct.unpack("<d", struct.pack("<Q", of))[0]
+
+
+def intervals():
+    """Ends of the intervals of mantissas."""
+    step = 2**52 // ENTRIES
+    return [(number(LEAST_MANTISSA + i * step), number(LEAST_MANTISSA + (i + 1) * step - 1)) for i in range(ENTRIES)]
+
+
+def table():
+    rows = []
+    for low, high in intervals():
+        c = mpmath.nint(2 / (mpmath.mpf(low) + mpmath.mpf(high)) * 2**11) / 2**11
+        # On either side of 1.
+        if low <= 1 <= high + 2.0**-52:
+            c = mpmath.mpf(1)
+        ln_high = mpmath.nint(-mpmath.log(c) * 2**42) / 2**42
+        rows.append((float(c), float(ln_high), float(-mpmath.log(c) - ln_high)))
+    lines = "".join(f"    [{c!r}, {high!r}, {low!r}],\n" for c, high, low in rows)
+    return f"""//! The table of logarithms: c, and −ln c in two parts, for each interval of mantissas. Made by tests/vectors/make.py: do not edit.
+
+/// Bits of the number of an interval.
+pub(crate) const ENTRY_BITS: u32 = {ENTRIES.bit_length() - 1};
+/// Intervals.
+pub(crate) const ENTRIES: usize = 1 << ENTRY_BITS;
+
+#[rustfmt::skip]
+pub(crate) static TABLE: [[f64; 3]; ENTRIES] = [
+{lines}];
+"""
+
+
 def main():
+    (Path(__file__).parents[2] / "src" / "table.rs").write_text(table())
+
     # Seeds by name: a function more changes no other.
     def source(name):
         return random.Random("fairflight/elementary/" + name)
@@ -53,7 +92,8 @@ def main():
         draw = source(name)
         if name == "ln":
             lattice = [1 - draw.getrandbits(53) * 2.0**-53 for _ in range(150)]
-            return near([1.0, 2.0, 0.5, math.sqrt(0.5)], draw) + lattice + logarithmic(draw, LEAST, 1e308, 100) + [MOST, LEAST, 2.2250738585072014e-308]
+            everywhere = [draw.uniform(*ends) * 2.0 ** draw.randint(-3, 3) for ends in intervals() for _ in range(2)]
+            return everywhere + near([1.0, 2.0, 0.5, math.sqrt(0.5)], draw) + lattice + logarithmic(draw, LEAST, 1e308, 100) + [MOST, LEAST, 2.2250738585072014e-308]
         if name == "ln_1p":
             small = both(logarithmic(draw, 1e-300, 0.9, 120))
             return small + near([-0.5, 1.0, 0.41421356, -0.29289322], draw) + logarithmic(draw, 1, 1e308, 60) + [-1 + 2.0**-53, MOST]
