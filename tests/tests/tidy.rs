@@ -97,7 +97,7 @@ fn a_long_file_says_why() {
 /// 1,050 for `metropolis` and `energy_redistribution` in both spaces, their refusals, mutations and layer of replicas; 330 for stages of chains that learn, shares
 /// of mutations, and images of chains that end early; 1,100 for the report on them: two modes in closed form, rows, mutations, equal time, resolution; 200 for
 /// estimates in lanes.
-const MOST_PRODUCT_LINES: usize = 35_000;
+const MOST_PRODUCT_LINES: usize = 35_200;
 
 #[test]
 fn the_harness_does_not_grow() {
@@ -169,7 +169,7 @@ fn blocks_of_bounds_are_counted() {
 #[test]
 fn bounds_are_short() {
     const MOST_LINES: usize = 4;
-    const TOTAL: usize = 126;
+    const TOTAL: usize = 129;
     let mut total = 0;
     for folder in ["crates", "harness", "tests"] {
         for (path, text) in sources(folder) {

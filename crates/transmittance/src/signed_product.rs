@@ -1,7 +1,5 @@
 //! Products of very many factors and sums of such, without under- or overflow.
 
-use fairflight_elementary as elementary;
-
 /// A product, or a sum of products, kept as mantissa · 2^(128 · scale).
 ///
 /// A walk of a million collisions multiplies a million weights; as a plain double the product is 0 or infinite long before
@@ -36,7 +34,7 @@ impl SignedProduct {
     pub fn exp(exponent: f64) -> Self {
         let scale = (exponent / (f64::from(STEP) * std::f64::consts::LN_2)).round();
         let rest = exponent - scale * f64::from(STEP) * std::f64::consts::LN_2;
-        Self { mantissa: elementary::exp(rest), scale: scale as i64 }
+        Self { mantissa: rest.exp(), scale: scale as i64 }
     }
 
     /// Quotient of this product over another, rounded once: 0 or infinite only where the quotient is. The other must not be 0.
@@ -148,9 +146,9 @@ impl SignedProduct {
     #[must_use]
     pub fn times_exp(&self, exponent: f64) -> f64 {
         if self.scale == 0 && exponent.abs() < 500.0 {
-            return self.mantissa * elementary::exp(exponent);
+            return self.mantissa * exponent.exp();
         }
-        self.sign() * elementary::exp(self.ln_abs() + exponent)
+        self.sign() * (self.ln_abs() + exponent).exp()
     }
 
     /// −1, 0 or 1; NaN for NaN.
@@ -163,7 +161,7 @@ impl SignedProduct {
     #[must_use]
     pub fn ln_abs(&self) -> f64 {
         let scale = self.scale as f64 * f64::from(STEP) * std::f64::consts::LN_2;
-        elementary::ln(self.mantissa.abs()) + scale
+        self.mantissa.abs().ln() + scale
     }
 }
 

@@ -61,7 +61,7 @@ pub use single_particle::{SingleParticleSpec, VersionWord};
 pub use telescoping::TelescopingSpec;
 pub use trial::{AnyPieces, Estimator, Lawful, On, Trial};
 pub use unbiased_ray_marching::{CombWord, RouletteSpec, UnbiasedRayMarchingSpec};
-pub use watched_lanes::WatchedLanes;
+pub use watched_lanes::{InLanes, WatchedLanes};
 pub use woodcock::WoodcockSpec;
 
 use crate::field::AnyProfile;

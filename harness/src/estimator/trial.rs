@@ -1,11 +1,11 @@
 //! An estimator on a profile: the seam between the crates and the harness.
 
-use super::watched_lanes::WatchedLanes;
+use super::watched_lanes::{InLanes, WatchedLanes};
 use crate::field::{Field, KnownField};
 use fairflight_elementary::lanes::LANES;
 use fairflight_media::{Breakpoints, Counted, Domain, RayQuadrature, Tolerance, Violation, Watched};
 use fairflight_sources::Seeded;
-use fairflight_transmittance::lockstep::{self, Lockstep};
+use fairflight_transmittance::lockstep;
 use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -130,21 +130,25 @@ where
     }
 }
 
-impl<F, E> On<F, E> {
+impl<F: KnownField, E> On<F, E> {
     /// The estimator on the field.
     pub fn trial(field: F, estimator: E) -> Arc<dyn Trial>
     where
-        F: KnownField,
         Self: Trial + 'static,
     {
         Arc::new(Self::new(field, estimator))
     }
 
+    fn new(field: F, estimator: E) -> Self {
+        let upper_bound = field.knowledge().upper_bound.unwrap_or(f64::INFINITY);
+        Self { field, estimator, upper_bound, fill: None }
+    }
+}
+
+impl<F: KnownField, E: InLanes<F>> On<F, E> {
     /// The same of an estimator that runs in lanes.
     pub fn trial_in_lanes(field: F, estimator: E) -> Arc<dyn Trial>
     where
-        F: KnownField,
-        E: Lockstep<F> + for<'a> Lockstep<WatchedLanes<'a, F, E>>,
         Self: Trial + 'static,
     {
         let fill: Fill<Self> = |trial, seeds, estimates| {
@@ -154,15 +158,9 @@ impl<F, E> On<F, E> {
         };
         Arc::new(Self { fill: Some(fill), ..Self::new(field, estimator) })
     }
+}
 
-    fn new(field: F, estimator: E) -> Self
-    where
-        F: KnownField,
-    {
-        let upper_bound = field.knowledge().upper_bound.unwrap_or(f64::INFINITY);
-        Self { field, estimator, upper_bound, fill: None }
-    }
-
+impl<F, E> On<F, E> {
     fn lawful(&self) -> Lawful<&F, &E> {
         Lawful { field: &self.field, estimator: &self.estimator, upper_bound: self.upper_bound }
     }

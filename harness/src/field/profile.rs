@@ -3,12 +3,11 @@
 use super::known::ErasedField;
 use super::{AnyMedium, KnownField, VoxelLattice, refused};
 use crate::Failure;
-use crate::estimator::{On, Trial, WatchedLanes};
+use crate::estimator::{InLanes, On, Trial};
 use fairflight_media::{
     AnalyticCosine, Certified, Clip, Constant, ExpressionMedium, ExpressionProfile, Homogeneous, Perlin,
     PiecewiseConstant, PiecewiseLinear, Ray, Voxels,
 };
-use fairflight_transmittance::lockstep::Lockstep;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -27,19 +26,17 @@ macro_rules! profiles {
             }
 
             /// An estimator on this profile, compiled for the type of its field.
-            pub fn trial<E>(&self, estimator: E) -> Arc<dyn Trial>
+            pub fn trial<E: 'static>(&self, estimator: E) -> Arc<dyn Trial>
             where
-                E: 'static,
                 $(On<$Field, E>: Trial),+
             {
                 match self { $(Self::$Variant(field) => On::trial(field.clone(), estimator)),+ }
             }
 
             /// The same of an estimator that runs in lanes.
-            pub fn trial_in_lanes<E>(&self, estimator: E) -> Arc<dyn Trial>
+            pub fn trial_in_lanes<E: 'static>(&self, estimator: E) -> Arc<dyn Trial>
             where
-                E: 'static,
-                $(E: Lockstep<$Field> + for<'a> Lockstep<WatchedLanes<'a, $Field, E>>,)+
+                $(E: InLanes<$Field>,)+
                 $(On<$Field, E>: Trial),+
             {
                 match self { $(Self::$Variant(field) => On::trial_in_lanes(field.clone(), estimator)),+ }

@@ -34,7 +34,7 @@ pub(super) fn checks() -> Vec<Check> {
         chains("over path tracing", 300_000, &paths, (Over::PathTracer, Taught::Nothing)),
         chains("over bidirectional path tracing", 300_000, &both, (Over::Bidirectional, Taught::Nothing)),
         chains("importance of pixels", 150_000, &paths, (Over::PathTracer, Taught::Importance)),
-        chains("sizes of steps by pixel", 150_000, &paths, (Over::PathTracer, Taught::Sizes)),
+        chains("sizes of steps by pixel", 300_000, &paths, (Over::PathTracer, Taught::Sizes)),
         unbiased("in path space", 150_000, &both, |run| result(&of_paths(&four_pixels(), run), run)),
         unbiased("energy redistribution", 300_000, &["energy_redistribution"], |run| {
             result(&redistributed(&four_pixels(), run), run)
