@@ -100,10 +100,12 @@ pub fn measure_plan(
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
     let &Plan { ref profile, ref estimator, samples, seed, counted, .. } = plan;
-    draw(profile, estimator, truth, (samples, seed, counted), advance)
+    let draws = Draws { samples, seed, counted, sequential: estimator.is_sequential, in_lanes: true };
+    measure(&*estimator.trial, draws, &|violation| explain(profile, estimator, truth, violation), advance)
 }
 
-/// Draws `samples` estimates of the transmittance of a profile from `seed`; of `counted` of them the look-ups are counted.
+/// Draws `samples` estimates of the transmittance of a profile from `seed`; of `counted` of them the look-ups are counted. One after the other: the times of
+/// estimators that are compared are those of the same kind of loop, and not all run in lanes.
 ///
 /// # Errors
 /// If a look-up is not lawful, or an estimate not finite.
@@ -114,7 +116,7 @@ pub fn draw(
     (samples, seed, counted): (u64, u64, u64),
     advance: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement, Failure> {
-    let draws = Draws { samples, seed, counted, sequential: estimator.is_sequential };
+    let draws = Draws { samples, seed, counted, sequential: estimator.is_sequential, in_lanes: false };
     let place = |violation: Violation| explain(profile, estimator, truth, violation);
     measure(&*estimator.trial, draws, &place, advance)
 }

@@ -51,6 +51,8 @@ pub struct Draws {
     pub counted: u64,
     /// True if each estimate may depend on those before it: then there is one thread.
     pub sequential: bool,
+    /// True if batches may be drawn side by side, by an estimator that runs in lanes: the same estimates.
+    pub in_lanes: bool,
 }
 
 /// Draws estimates. `advance` is told how many samples were added.
@@ -70,7 +72,7 @@ pub fn measure(
     let (mut seconds, mut lookups, mut counted, mut negative) = (0.0, 0, 0, 0);
     for start in (0..batches).step_by(CHUNK as usize) {
         let indices = start..batches.min(start + CHUNK);
-        let width = width(trial, indices.end - indices.start);
+        let width = width(trial, draws, indices.end - indices.start);
         let groups = indices.clone().step_by(width).map(|from| from..indices.end.min(from + width as u64));
         let groups: Vec<Range<u64>> = groups.collect();
         let buffer = || Vec::with_capacity(width * BATCH as usize);
@@ -99,11 +101,15 @@ pub fn measure(
 }
 
 /// Batches that are drawn side by side, of so many: as many as there are lanes, unless cores would then have nothing to do. The estimates are the same.
-fn width(trial: &dyn Trial, batches: u64) -> usize {
+fn width(trial: &dyn Trial, draws: Draws, batches: u64) -> usize {
     /// Fewer are drawn one after the other: lanes cost what all of them cost.
     const FEWEST: usize = 4;
     let each = batches.div_ceil(rayon::current_num_threads() as u64) as usize;
-    if trial.runs_in_lanes() && each >= FEWEST { each.min(LANES) } else { 1 }
+    if draws.in_lanes && !draws.sequential && trial.runs_in_lanes() && each >= FEWEST {
+        each.min(LANES)
+    } else {
+        1
+    }
 }
 
 /// Draws a group of batches.
@@ -193,7 +199,7 @@ mod tests {
     }
 
     fn measured(trial: &dyn Trial, samples: u64, counted: u64) -> Result<Measurement, Failure> {
-        let draws = Draws { samples, seed: 5, counted, sequential: false };
+        let draws = Draws { samples, seed: 5, counted, sequential: false, in_lanes: true };
         let place = |at: Violation| Failure::refused(format!("at {}: {}", at.s, at.sigma_t));
         measure(trial, draws, &place, &|_| ())
     }
