@@ -17,9 +17,12 @@ pub struct WatchedLanes<'a, F, E> {
 }
 
 /// An estimator that runs in lanes on a field, also where look-ups are watched.
-pub trait InLanes<F: Extinction>: Lockstep<F> + for<'a> Lockstep<WatchedLanes<'a, F, Self>> + Sized {}
+pub trait InLanes<F: Extinction>:
+    Lockstep<F> + for<'a> Lockstep<WatchedLanes<'a, F, Self>> + Sized + 'static
+{
+}
 
-impl<F: Extinction, E: Lockstep<F> + for<'a> Lockstep<WatchedLanes<'a, F, E>>> InLanes<F> for E {}
+impl<F: Extinction, E: Lockstep<F> + for<'a> Lockstep<WatchedLanes<'a, F, E>> + 'static> InLanes<F> for E {}
 
 impl<'a, F, E> WatchedLanes<'a, F, E> {
     pub(super) fn new(field: &'a F, estimator: &'a E, upper_bound: f64) -> Self {

@@ -34,7 +34,7 @@ macro_rules! profiles {
             }
 
             /// The same of an estimator that runs in lanes.
-            pub fn trial_in_lanes<E: 'static>(&self, estimator: E) -> Arc<dyn Trial>
+            pub fn trial_in_lanes<E>(&self, estimator: E) -> Arc<dyn Trial>
             where
                 $(E: InLanes<$Field>,)+
                 $(On<$Field, E>: Trial),+
