@@ -145,7 +145,7 @@ pub(super) struct Compared {
 }
 
 impl Compared {
-    /// All methods in a scene.
+    /// Measures the error and the CPU time of each method in a scene.
     pub(super) fn study(
         run: &Run<'_>,
         scene: &'static Scene,
