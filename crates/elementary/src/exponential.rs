@@ -1,17 +1,13 @@
 //! The exponential.
 
 use crate::parts::{LN_2, each, nearest, polynomial, power_of_two, two_sum};
+use crate::table_of_powers::{ENTRIES, ENTRY_BITS, TABLE};
 use std::f64::consts::LOG2_E;
 
-/// Coefficients of P = (2 − r (e^r + 1)/(e^r − 1))/r² + …, an even function of r, for |r| ≤ ln 2/2: the minimax polynomial of fdlibm's `e_exp.c` (Sun
-/// Microsystems 1993), in error by less than 2^−59.
-const RATIO: [f64; 5] = [
-    1.666_666_666_666_660_190_37e-1,
-    -2.777_777_777_701_559_338_42e-3,
-    6.613_756_321_437_934_361_17e-5,
-    -1.653_390_220_546_525_153_90e-6,
-    4.138_136_797_057_238_460_39e-8,
-];
+/// ln 2/128 in two parts, of which the first has 33 bits: its product with a number of at most 20 bits is exact.
+const STEP: [f64; 2] = [LN_2[0] / ENTRIES as f64, LN_2[1] / ENTRIES as f64];
+/// 128/ln 2.
+const STEPS: f64 = LOG2_E * ENTRIES as f64;
 
 /// Coefficients of 6/r (1/(e^r − 1) − 1/r + 1/2) · 2 by r²/2, of fdlibm's `s_expm1.c`, in error by less than 2^−61.
 const RATIO_M1: [f64; 6] = [
@@ -23,33 +19,62 @@ const RATIO_M1: [f64; 6] = [
     -2.010_992_181_836_243_713_26e-7,
 ];
 
-/// x = k ln 2 + r: k, the same in the lowest bits of a word, and the parts of r = high − low.
-#[inline(always)]
-fn reduced(x: f64) -> (f64, u64, [f64; 2]) {
-    let (k, bits) = nearest(x * LOG2_E);
-    (k, bits, [x - k * LN_2[0], k * LN_2[1]])
+/// x = n ln 2/128 + r, n = 128 k + i, |r| ≤ ln 2/256: then e^x = 2^k 2^(i/128) e^r.
+///
+/// The table has 2^(i/128) = t + l to twice the digits; e^x = 2^k (t + (l + t (e^r − 1))) is rounded once up to |r|/2 and r⁶/720, 0.506 ulp.
+#[derive(Clone, Copy)]
+struct Parted {
+    n: f64,
+    bits: u64,
+    r: f64,
 }
 
-/// e^r: with c = r − r² P(r²), e^r = 1 + r + r c/(2 − c).
-#[inline(always)]
-fn of_rest([high, low]: [f64; 2]) -> f64 {
-    let r = high - low;
-    let square = r * r;
-    let c = r - square * polynomial(square, RATIO);
-    1.0 - ((low - r * c / (2.0 - c)) - high)
+impl Parted {
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        let (n, bits) = nearest(x * STEPS);
+        Self { n, bits, r: (x - n * STEP[0]) - n * STEP[1] }
+    }
+
+    #[inline(always)]
+    fn entry(self) -> [f64; 2] {
+        TABLE[self.bits as usize % ENTRIES]
+    }
+
+    /// e^x/2^k, from 1 to 2.
+    #[inline(always)]
+    fn mantissa(self, [high, low]: [f64; 2]) -> f64 {
+        let r = self.r;
+        let rest = r + r * r * polynomial(r, [0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0]);
+        high + (low + high * rest)
+    }
+
+    /// e^x where 2^k is a normal number.
+    #[inline(always)]
+    fn exp(self, entry: [f64; 2]) -> f64 {
+        self.mantissa(entry) * power_of_two(self.bits >> ENTRY_BITS)
+    }
 }
 
 /// e^x where 2^k is a normal number.
 #[inline(always)]
 pub(crate) fn near(x: f64) -> f64 {
-    let (_, bits, rest) = reduced(x);
-    of_rest(rest) * power_of_two(bits)
+    let parted = Parted::of(x);
+    parted.exp(parted.entry())
 }
 
-/// The same in all lanes.
+/// The same in all lanes. The table is read in a loop of its own, as that of logarithms.
 #[inline(always)]
 pub(crate) fn near_lanes<const N: usize>(x: &[f64; N]) -> [f64; N] {
-    each(x, near)
+    let (mut high, mut low) = ([0.0; N], [0.0; N]);
+    for i in 0..N {
+        [high[i], low[i]] = Parted::of(x[i]).entry();
+    }
+    let mut values = [0.0; N];
+    for i in 0..N {
+        values[i] = Parted::of(x[i]).exp([high[i], low[i]]);
+    }
+    values
 }
 
 #[inline(always)]
@@ -64,11 +89,19 @@ pub(crate) fn far(x: f64) -> f64 {
     if x.is_nan() {
         return x;
     }
-    let (k, _, rest) = reduced(x.clamp(-746.0, 710.0));
+    let parted = Parted::of(x.clamp(-746.0, 710.0));
+    let k = (parted.n / ENTRIES as f64).floor();
     // In two factors, each of which is a normal number.
     let (half, bits) = nearest(0.5 * k);
     let (_, other) = nearest(k - half);
-    of_rest(rest) * power_of_two(bits) * power_of_two(other)
+    parted.mantissa(parted.entry()) * power_of_two(bits) * power_of_two(other)
+}
+
+/// x = k ln 2 + r: k in the lowest bits of a word, and the parts of r = high − low.
+#[inline(always)]
+fn reduced(x: f64) -> (u64, [f64; 2]) {
+    let (k, bits) = nearest(x * LOG2_E);
+    (bits, [x - k * LN_2[0], k * LN_2[1]])
 }
 
 /// e^x − 1 where 1 is told from it; not of 0.
@@ -76,7 +109,7 @@ pub(crate) fn far(x: f64) -> f64 {
 /// With x = k ln 2 + r and e^r − 1 = r − E, e^x − 1 = (2^k − 1) + 2^k r − 2^k E: the first two are summed without a loss, and E is at most r²/2 or so.
 #[inline(always)]
 pub(crate) fn near_m1(x: f64) -> f64 {
-    let (_, bits, parts) = reduced(x);
+    let (bits, parts) = reduced(x);
     let (r, lost) = rest_m1(parts);
     let scale = power_of_two(bits);
     let (sum, rounded) = two_sum(scale - 1.0, scale * r);
@@ -101,7 +134,7 @@ pub(crate) fn far_m1(x: f64) -> f64 {
     if x == 0.0 || x.is_nan() {
         return x;
     }
-    let (_, bits, parts) = reduced(x.clamp(-40.0, 710.0));
+    let (bits, parts) = reduced(x.clamp(-40.0, 710.0));
     let (r, lost) = rest_m1(parts);
     // In halves: 2^1024 is no number.
     let scale = power_of_two(bits.wrapping_sub(1));

@@ -38,7 +38,8 @@ mod logarithm;
 mod parts;
 mod rare;
 mod sine;
-mod table;
+mod table_of_logarithms;
+mod table_of_powers;
 
 pub use functions::{cos, exp, exp_m1, ln, ln_1p, sin, sin_cos};
 pub use rare::{acos, asin, atan, atan2, cbrt, exp2, hypot, log2, log10, pow, tan};

@@ -1,7 +1,7 @@
 //! The natural logarithm.
 
 use crate::parts::{BIAS, EXPONENT, EXPONENT_BITS, LN_2, exponent, two_sum};
-use crate::table::{ENTRIES, ENTRY_BITS, TABLE};
+use crate::table_of_logarithms::{ENTRIES, ENTRY_BITS, TABLE};
 
 /// Bits of the least mantissa, 0.6875: those of an argument less these are its exponent and its interval.
 const LEAST: u64 = 0x3FE6_0000_0000_0000;

@@ -1,6 +1,6 @@
-"""Makes the vectors: arguments, correctly rounded values, and what rounding took off them (mpmath, 60 digits); and the table of logarithms.
+"""Makes the vectors: arguments, correctly rounded values, and what rounding took off them (mpmath, 60 digits); and the tables.
 
-    python3 make.py        writes FUNCTION.txt beside itself, and src/table.rs
+    python3 make.py        writes FUNCTION.txt beside itself, and src/table_of_*.rs
 """
 
 import math
@@ -55,7 +55,7 @@ def intervals():
     return [(number(LEAST_MANTISSA + i * step), number(LEAST_MANTISSA + (i + 1) * step - 1)) for i in range(ENTRIES)]
 
 
-def table():
+def logarithms():
     rows = []
     for low, high in intervals():
         c = mpmath.nint(2 / (mpmath.mpf(low) + mpmath.mpf(high)) * 2**11) / 2**11
@@ -65,21 +65,37 @@ def table():
         ln_high = mpmath.nint(-mpmath.log(c) * 2**42) / 2**42
         rows.append((float(c), float(ln_high), float(-mpmath.log(c) - ln_high)))
     lines = "".join(f"    [{c!r}, {high!r}, {low!r}],\n" for c, high, low in rows)
-    return f"""//! The table of logarithms: c, and −ln c in two parts, for each interval of mantissas. Made by tests/vectors/make.py: do not edit.
+    return rows
 
-/// Bits of the number of an interval.
+
+def powers():
+    rows = []
+    for i in range(ENTRIES):
+        power = mpmath.mpf(2) ** (mpmath.mpf(i) / ENTRIES)
+        high = float(power)
+        rows.append((high, float(power - mpmath.mpf(high))))
+    return rows
+
+
+def write_table(name, title, rows):
+    lines = "".join(f"    [{', '.join(repr(number) for number in row)}],\n" for row in rows)
+    text = f"""//! {title} Made by tests/vectors/make.py: do not edit.
+
+/// Bits of the number of an entry.
 pub(crate) const ENTRY_BITS: u32 = {ENTRIES.bit_length() - 1};
-/// Intervals.
+/// Entries.
 pub(crate) const ENTRIES: usize = 1 << ENTRY_BITS;
 
 #[rustfmt::skip]
-pub(crate) static TABLE: [[f64; 3]; ENTRIES] = [
+pub(crate) static TABLE: [[f64; {len(rows[0])}]; ENTRIES] = [
 {lines}];
 """
+    (Path(__file__).parents[2] / "src" / f"table_of_{name}.rs").write_text(text)
 
 
 def main():
-    (Path(__file__).parents[2] / "src" / "table.rs").write_text(table())
+    write_table("logarithms", "The table of logarithms: c, and −ln c in two parts, for each interval of mantissas.", logarithms())
+    write_table("powers", "The table of powers: 2^(i/128) in two parts.", powers())
 
     # Seeds by name: a function more changes no other.
     def source(name):

@@ -1,8 +1,8 @@
 //! The table of logarithms: c, and −ln c in two parts, for each interval of mantissas. Made by tests/vectors/make.py: do not edit.
 
-/// Bits of the number of an interval.
+/// Bits of the number of an entry.
 pub(crate) const ENTRY_BITS: u32 = 7;
-/// Intervals.
+/// Entries.
 pub(crate) const ENTRIES: usize = 1 << ENTRY_BITS;
 
 #[rustfmt::skip]
