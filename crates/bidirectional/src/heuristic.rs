@@ -1,5 +1,6 @@
 //! How weights follow from logarithms of densities.
 
+use fairflight_elementary::{exp, ln_1p};
 use fairflight_paths::Heuristic;
 
 /// A heuristic (veach-1995, antwerpen-2011 section 3.6) on logarithms, which do not underflow.
@@ -40,7 +41,7 @@ impl LogHeuristic for Heuristic {
         if self == Self::Maximum || least == f64::NEG_INFINITY {
             most
         } else {
-            most + (least - most).exp().ln_1p()
+            most + ln_1p(exp(least - most))
         }
     }
 
@@ -48,7 +49,7 @@ impl LogHeuristic for Heuristic {
     fn weight(self, fewer: f64, more: f64) -> f64 {
         match self {
             Self::Maximum => f64::from(u8::from(fewer < -TIE && more <= TIE)),
-            Self::Balance | Self::Power => 1.0 / (1.0 + fewer.exp() + more.exp()),
+            Self::Balance | Self::Power => 1.0 / (1.0 + exp(fewer) + exp(more)),
         }
     }
 }

@@ -6,6 +6,7 @@
 
 use crate::thickness::between;
 use crate::{Found, LightEnd, LogHeuristic, Node, Place, Subpath, Weigh, WeightThickness};
+use fairflight_elementary::{exp, ln};
 use fairflight_paths::Heuristic;
 use fairflight_paths::transport::{Emitters, Types, World};
 use glam::DVec3;
@@ -110,7 +111,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
             let first = ln.iter().position(|&ln| ln >= greatest - 1e-9);
             return (0..ln.len()).map(|i| f64::from(u8::from(Some(i) == first))).collect();
         }
-        let powers: Vec<f64> = ln.iter().map(|ln| self.heuristic.scale(ln - greatest).exp()).collect();
+        let powers: Vec<f64> = ln.iter().map(|ln| exp(self.heuristic.scale(ln - greatest))).collect();
         let sum: f64 = powers.iter().sum();
         powers.iter().map(|power| power / sum).collect()
     }
@@ -135,11 +136,11 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
             let product = eye[1..t].iter().chain(&light[t.min(k)..k]).copied();
             let at_end = match s {
                 0 => 0.0,
-                1 => ln_if(connectable(k - 1), end.pdf_direct(last).ln()),
+                1 => ln_if(connectable(k - 1), ln(end.pdf_direct(last))),
                 _ => {
                     let exists = connectable(t) && (t == 1 || connectable(t - 1));
-                    let count = if t == 1 { self.light_paths.ln() } else { 0.0 };
-                    ln_if(exists, end.pdf_start().ln() + count)
+                    let count = if t == 1 { ln(self.light_paths) } else { 0.0 };
+                    ln_if(exists, ln(end.pdf_start()) + count)
                 }
             };
             accurate_sum(product.chain([at_end]))
@@ -148,25 +149,25 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
     }
 
     /// ln P→(x_i), i = 1 … k, at index i.
-    fn ln_from_eye(&self, path: &Path<'_>, ln: &mut Vec<f64>) {
+    fn ln_from_eye(&self, path: &Path<'_>, densities: &mut Vec<f64>) {
         let Path { places, end } = path;
         let (phase, volume) = (&self.world.volume.phase, self.world.volume);
         let origin = self.camera.origin();
         let k = places.len() + 1;
-        ln.clear();
-        ln.resize(k + 1, 0.0);
+        densities.clear();
+        densities.resize(k + 1, 0.0);
         let first = &places[0];
         let importance = self.camera.importance(first.position);
         let towards = (first.position - origin).normalize();
         let thickness = between(volume, &self.thickness, origin, first.position);
-        ln[1] = importance.ln() + first.facing(towards).ln() - thickness;
+        densities[1] = ln(importance) + ln(first.facing(towards)) - thickness;
         for i in 2..=k {
             let before = if i == 2 { origin } else { places[i - 3].position };
             let at = &places[i - 2];
             let incident = (at.position - before).normalize();
-            ln[i] = if i == k {
+            densities[i] = if i == k {
                 let (towards, _) = end.seen_from(at.position);
-                at.scatter(phase, incident, towards).ln() + end.ln_met(at) - self.to_light(end, at)
+                ln(at.scatter(phase, incident, towards)) + end.ln_met(at) - self.to_light(end, at)
             } else {
                 self.ln_edge(at, incident, &places[i - 1])
             };
@@ -174,20 +175,20 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
     }
 
     /// ln P←(x_j), j = 1 … k − 1, at index j.
-    fn ln_from_light(&self, path: &Path<'_>, ln: &mut Vec<f64>) {
+    fn ln_from_light(&self, path: &Path<'_>, densities: &mut Vec<f64>) {
         let Path { places, end } = path;
         let k = places.len() + 1;
-        ln.clear();
-        ln.resize(k + 1, 0.0);
+        densities.clear();
+        densities.resize(k + 1, 0.0);
         let last = &places[k - 2];
-        ln[k - 1] = end.ln_emitted(last) - self.to_light(end, last);
+        densities[k - 1] = end.ln_emitted(last) - self.to_light(end, last);
         for j in (1..k - 1).rev() {
             let at = places[j].reversed();
             let incident = match places.get(j + 1) {
                 Some(behind) => (at.position - behind.position).normalize(),
                 None => -end.seen_from(at.position).0,
             };
-            ln[j] = self.ln_edge(&at, incident, &places[j - 1]);
+            densities[j] = self.ln_edge(&at, incident, &places[j - 1]);
         }
     }
 
@@ -197,7 +198,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Weigh<'_, W, K> {
         let (squared, direction) = (offset.length_squared(), offset.normalize());
         let thickness = between(self.world.volume, &self.thickness, at.position, to.position);
         let scattered = at.scatter(&self.world.volume.phase, incident, direction);
-        scattered.ln() + to.facing(direction).ln() - squared.ln() - thickness
+        ln(scattered) + ln(to.facing(direction)) - ln(squared) - thickness
     }
 }
 

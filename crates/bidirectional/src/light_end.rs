@@ -1,6 +1,7 @@
 //! The end of a path on a light: base cases of the recursion.
 
 use crate::Place;
+use fairflight_elementary::ln;
 use fairflight_paths::transport::{Emitters, Light, Sides, Types, World};
 use fairflight_scene::{Geometry, Shape, Source};
 use glam::DVec3;
@@ -132,7 +133,7 @@ impl<'s> LightEnd<'s> {
             (Kind::Parallel { disc, .. } | Kind::Sky { disc, .. }, _) => 1.0 / disc,
             (_, squared) => 1.0 / (4.0 * PI * squared.unwrap_or(f64::INFINITY)),
         };
-        (facing * per_facing.max(f64::MIN_POSITIVE)).ln()
+        ln(facing * per_facing.max(f64::MIN_POSITIVE))
     }
 
     /// ln P→ of this end, met by chance from `place`, but for the density of the direction and T; ln 0 without extent.
@@ -142,7 +143,7 @@ impl<'s> LightEnd<'s> {
             Kind::Area { position, normal, .. } => {
                 let offset = position - place.position;
                 let squared = offset.length_squared();
-                (normal.dot(offset / squared.sqrt()).abs().max(f64::MIN_POSITIVE) / squared).ln()
+                ln(normal.dot(offset / squared.sqrt()).abs().max(f64::MIN_POSITIVE) / squared)
             }
             Kind::Sky { .. } => 0.0,
             Kind::Point { .. } | Kind::Parallel { .. } => f64::NEG_INFINITY,

@@ -1,6 +1,7 @@
 //! A vertex of a path as densities see it, and of a subpath with what its weights will need.
 
 use crate::LogHeuristic;
+use fairflight_elementary::ln;
 use fairflight_media::PhaseFunction;
 use fairflight_paths::transport::{Lobe, Vertex};
 use glam::DVec3;
@@ -145,9 +146,9 @@ impl Node {
             place,
             incident,
             // P→ = q p_ω D E/r²: raab-2008 eq. 12 per volume, with survival.
-            ln_forward: (scattered * place.facing(incident) / squared).ln() - thickness,
+            ln_forward: ln(scattered * place.facing(incident) / squared) - thickness,
             // The edge (v_(i−1), v_i), as the definition of antwerpen-2011 5.3 has it; its algorithms 2 and 3 print the edge before.
-            ln_geometry: (previous.place.facing(incident) / squared).ln() - thickness,
+            ln_geometry: ln(previous.place.facing(incident) / squared) - thickness,
             ln_connectable: if is_connectable { 0.0 } else { f64::NEG_INFINITY },
             ln_before: previous.ln_others(phase, heuristic, incident),
         }
@@ -170,7 +171,7 @@ impl Node {
         outgoing: DVec3,
     ) -> f64 {
         let back = self.place.reversed().scatter(phase, -outgoing, -self.incident);
-        let behind = heuristic.scale(back.ln() + self.ln_geometry) + self.ln_before;
+        let behind = heuristic.scale(ln(back) + self.ln_geometry) + self.ln_before;
         heuristic.add(heuristic.scale(self.ln_connectable), behind) - heuristic.scale(self.ln_forward)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::thickness::{between, beyond};
 use crate::{LightEnd, LogHeuristic, Node, Place, Site, WeightThickness};
+use fairflight_elementary::ln;
 use fairflight_media::Medium;
 use fairflight_paths::Heuristic;
 use fairflight_paths::transport::{Emitters, Types, World};
@@ -101,10 +102,10 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
         Node {
             place,
             incident,
-            ln_forward: (self.camera.importance(place.position) * place.facing(incident)).ln()
+            ln_forward: ln(self.camera.importance(place.position) * place.facing(incident))
                 - self.between(origin, place.position),
             ln_geometry: f64::NEG_INFINITY,
-            ln_connectable: if is_connectable { self.light_paths.ln() } else { f64::NEG_INFINITY },
+            ln_connectable: if is_connectable { ln(self.light_paths) } else { f64::NEG_INFINITY },
             ln_before: f64::NEG_INFINITY,
         }
     }
@@ -113,8 +114,8 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
     pub fn first_of_light(&self, end: &LightEnd<'_>, place: Place) -> Node {
         let (towards, _) = end.seen_from(place.position);
         let thickness = self.to_light(end, &place);
-        let ln_start = end.pdf_start().ln();
-        let ln_direct = if place.is_connectable() { end.pdf_direct(&place).ln() } else { f64::NEG_INFINITY };
+        let ln_start = ln(end.pdf_start());
+        let ln_direct = if place.is_connectable() { ln(end.pdf_direct(&place)) } else { f64::NEG_INFINITY };
         Node {
             place,
             incident: -towards,
@@ -144,8 +145,8 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
         let to_y = z.place.scatter(phase, z.incident, -direction) * y.place.facing(direction) / squared;
         let to_z = y.place.scatter(phase, y.incident, direction) * z.place.facing(direction) / squared;
         let heuristic = self.heuristic;
-        let fewer = heuristic.scale(to_y.ln() - thickness) + y.ln_others(phase, heuristic, direction);
-        let more = heuristic.scale(to_z.ln() - thickness) + z.ln_others(phase, heuristic, -direction);
+        let fewer = heuristic.scale(ln(to_y) - thickness) + y.ln_others(phase, heuristic, direction);
+        let more = heuristic.scale(ln(to_z) - thickness) + z.ln_others(phase, heuristic, -direction);
         heuristic.weight(fewer, more)
     }
 
@@ -156,7 +157,7 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
         let direction = (origin - z.place.position).normalize();
         let thickness = self.between(origin, z.place.position);
         let drawn = self.camera.importance(z.place.position) * z.place.facing(direction);
-        let ln_drawn = drawn.ln() - thickness - self.light_paths.ln();
+        let ln_drawn = ln(drawn) - thickness - ln(self.light_paths);
         let heuristic = self.heuristic;
         let more = heuristic.scale(ln_drawn) + z.ln_others(&self.world.volume.phase, heuristic, direction);
         heuristic.weight(f64::NEG_INFINITY, more)
@@ -171,9 +172,9 @@ impl<'s, W: Types, K: WeightThickness<W::Medium>> Weigh<'s, W, K> {
         let thickness = self.to_light(end, place);
         // Three densities of one end: chosen for the vertex, met by a direction of it, or the start of a light path; behind the
         // last the recursion goes on.
-        let sampled = if place.is_connectable() { end.pdf_direct(place).ln() } else { f64::NEG_INFINITY };
-        let met = place.scatter(phase, y.incident, direction).ln() + end.ln_met(place) - thickness;
-        let started = end.pdf_start().ln() + end.ln_emitted(place) - thickness;
+        let sampled = if place.is_connectable() { ln(end.pdf_direct(place)) } else { f64::NEG_INFINITY };
+        let met = ln(place.scatter(phase, y.incident, direction)) + end.ln_met(place) - thickness;
+        let started = ln(end.pdf_start()) + end.ln_emitted(place) - thickness;
         let [sampled, met, started] = [sampled, met, started].map(|ln| heuristic.scale(ln));
         let connected = started + y.ln_others(phase, heuristic, direction);
         let weight = |own: f64, fewer: f64, more: f64| {

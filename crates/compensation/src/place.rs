@@ -1,6 +1,7 @@
 //! Placement of a compensation vertex.
 
 use crate::{CompensationOptions, LocalMean, Placement, TransmittanceUse, TruncatedExponential, Visibility};
+use fairflight_elementary::exp;
 use fairflight_media::Extinction;
 use fairflight_paths::transport::{Event, Lobe, Types, Vertex};
 use fairflight_scene::{Geometry, Hit, Segment};
@@ -127,7 +128,7 @@ fn within_region<W: Types>(
             let way = Segment { length: distance, ..*segment };
             world.transmittance(&way, &mut gather.shadow, source)
         }
-        TransmittanceUse::Approximate => (-mean.at(segment.line.origin) * distance).exp(),
+        TransmittanceUse::Approximate => exp(-mean.at(segment.line.origin) * distance),
     };
     if distance < end {
         if distance < ray.entry_distance() {

@@ -1,5 +1,7 @@
 //! Distances within the bounding region in a medium that is taken for homogeneous (engelhardt-2013 eq. 4 and 5).
 
+use fairflight_elementary::{exp, exp_m1, ln_1p};
+
 /// The exponential distribution cut off at a length.
 ///
 /// ```text
@@ -29,7 +31,7 @@ impl TruncatedExponential {
     pub fn new(rate: f64, length: f64) -> Self {
         debug_assert!(rate >= 0.0 && rate.is_finite() && length > 0.0, "rate {rate}, length {length}");
         debug_assert!(rate > 0.0 || length.is_finite(), "nothing ends an endless flight through nothing");
-        Self { rate, length, mass: -(-rate * length).exp_m1() }
+        Self { rate, length, mass: -exp_m1(-rate * length) }
     }
 
     /// The distance below which a share `u` of the mass lies, u in \[0, 1) \[length\].
@@ -39,7 +41,7 @@ impl TruncatedExponential {
         if self.mass < UNIFORM_BELOW {
             return u * self.length;
         }
-        (-(-u * self.mass).ln_1p() / self.rate).min(self.length)
+        (-ln_1p(-u * self.mass) / self.rate).min(self.length)
     }
 
     /// The density of [`sample`](Self::sample) at a distance within the length \[1/length\].
@@ -49,7 +51,7 @@ impl TruncatedExponential {
         if self.mass < UNIFORM_BELOW {
             return 1.0 / self.length;
         }
-        self.rate * (-self.rate * distance).exp() / self.mass
+        self.rate * exp(-self.rate * distance) / self.mass
     }
 
     /// The probability of a distance of at least `distance` ≥ 0 \[1\].
@@ -63,8 +65,8 @@ impl TruncatedExponential {
             return 1.0 - distance / self.length;
         }
         // exp(−σs)(1 − exp(−σ(R − s)))/(1 − exp(−σR)): nothing cancels.
-        let rest = -(-self.rate * (self.length - distance)).exp_m1();
-        (-self.rate * distance).exp() * rest / self.mass
+        let rest = -exp_m1(-self.rate * (self.length - distance));
+        exp(-self.rate * distance) * rest / self.mass
     }
 }
 

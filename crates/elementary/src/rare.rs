@@ -26,6 +26,8 @@ of_libm! {
     cbrt(x) = cbrt;
     /// √(x² + y²) without overflow.
     hypot(x, y) = hypot;
+    /// The hyperbolic sine.
+    sinh(x) = sinh;
     /// The tangent.
     tan(x) = tan;
     /// The angle in [−π/2, π/2] of this sine.

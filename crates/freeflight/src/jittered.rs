@@ -2,6 +2,7 @@
 
 use crate::theory::{HIGHEST_MOMENT, Moments, one_more, poisson_moments};
 use crate::{ClosedForm, Flight, FreeFlight};
+use fairflight_elementary::exp;
 use fairflight_media::{Epsilon, EpsilonError, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -117,7 +118,7 @@ impl<F: Majorant> ClosedForm<F> for JitteredFlight {
             let passed = (tau(s) - before[i]).max(0.0);
             let (_, one) = poisson_moments((majorant * (s - from) - passed).max(0.0));
             let two = one_more(&one);
-            let (density, rest) = (sigma_t * (-passed).exp(), before[i + 1] - tau(s));
+            let (density, rest) = (sigma_t * exp(-passed), before[i + 1] - tau(s));
             let accepted = one.map(|moment| density * moment);
             let failed = two.map(|moment| density * rest * moment);
             std::array::from_fn::<f64, { 2 * HIGHEST_MOMENT + 1 }, _>(|j| match j {

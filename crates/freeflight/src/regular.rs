@@ -3,6 +3,7 @@
 use crate::root::crossing;
 use crate::theory::{HIGHEST_MOMENT, Moments, powers};
 use crate::{ClosedForm, Flight, FreeFlight};
+use fairflight_elementary::{exp, exp_m1};
 use fairflight_media::{Cells, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -128,10 +129,10 @@ impl<F: Cells> ClosedForm<F> for Regular {
         for (from, to) in cells(field) {
             passed += 2.0;
             let thickness = Cell::look_up(field, from, to).thickness();
-            score(passed + 2.0, (-tau).exp() * -(-thickness).exp_m1());
+            score(passed + 2.0, exp(-tau) * -exp_m1(-thickness));
             tau += thickness;
         }
-        score(passed, (-tau).exp());
+        score(passed, exp(-tau));
         Some(moments)
     }
 }

@@ -1,6 +1,7 @@
 //! The law of a sampler in closed form, before a flight is drawn.
 
 use crate::WeightLaw;
+use fairflight_elementary::{exp, ln};
 use fairflight_media::{Extinction, Integral, RayQuadrature, Tolerance};
 
 /// The highest power of a score whose moment is computed: what the tests of a mean (4) and of a variance (8) want.
@@ -61,12 +62,12 @@ pub(crate) fn lookups_of_a_race<F: Extinction>(
         quadrature.integrate_nested(tolerance, ending_and_passing, |s, sigma_t, [ended, passed]| {
             let [unseen, ending, _] = rates(s, sigma_t);
             let (as_passed, one_more) = poisson_moments(passed);
-            let under_way = (-ended).exp();
+            let under_way = exp(-ended);
             std::array::from_fn(|i| ending * under_way * one_more[i] + unseen * under_way * as_passed[i])
         });
     let [all_ended, all_passed] = quadrature.integrate(tolerance, ending_and_passing).value;
     let (escaped, _) = poisson_moments(all_passed);
-    std::array::from_fn(|i| ended.value[i] + (-all_ended).exp() * escaped[i])
+    std::array::from_fn(|i| ended.value[i] + exp(-all_ended) * escaped[i])
 }
 
 /// E\[P^k\] and E\[(1 + P)^k\], k = 1 … 8, of a Poisson variate P of this mean: the second by the binomial theorem, and
@@ -103,12 +104,12 @@ fn one_more_to(k: usize, raw: &Moments) -> f64 {
 #[inline]
 pub(crate) fn times_exp(factor: f64, exponent: f64, score: f64) -> f64 {
     if exponent.abs() < 600.0 {
-        return factor * exponent.exp() * score;
+        return factor * exp(exponent) * score;
     }
     if factor == 0.0 || score == 0.0 {
         return 0.0;
     }
-    factor.signum() * score.signum() * (exponent + factor.abs().ln() + score.abs().ln()).exp()
+    factor.signum() * score.signum() * exp(exponent + ln(factor.abs()) + ln(score.abs()))
 }
 
 /// x, x², …, x⁸.

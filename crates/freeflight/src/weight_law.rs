@@ -1,6 +1,7 @@
 //! Moments of the weights of a flight, by quadrature over the ray.
 
 use crate::theory::{HIGHEST_MOMENT, Moments, powers, times_exp};
+use fairflight_elementary::exp;
 use fairflight_media::{Extinction, Integral, RayQuadrature, Tolerance};
 
 /// A function of a field, s and σ_t(s).
@@ -69,7 +70,7 @@ impl<'a, F: Extinction + Clone> WeightLaw<'a, F> {
             Self::One => quadrature.integrate_nested(
                 tolerance,
                 |_, sigma_t| [sigma_t],
-                |s, sigma_t, [tau]| powers(score(s)).map(|power| sigma_t * (-tau).exp() * power),
+                |s, sigma_t, [tau]| powers(score(s)).map(|power| sigma_t * exp(-tau) * power),
             ),
             Self::OneIn(n) => {
                 let one = Self::One.collided(quadrature, tolerance, score);
@@ -80,7 +81,7 @@ impl<'a, F: Extinction + Clone> WeightLaw<'a, F> {
                 let mean = quadrature.integrate_nested(
                     tolerance,
                     |_, sigma_t| [sigma_t],
-                    |s, sigma_t, [tau]| [sigma_t * (-tau).exp() * score(s)],
+                    |s, sigma_t, [tau]| [sigma_t * exp(-tau) * score(s)],
                 );
                 let [value, error] = [mean.value, mean.error].map(|[mean]| mean_only(mean));
                 Integral { value, error, converged: mean.converged }
@@ -99,7 +100,7 @@ impl<'a, F: Extinction + Clone> WeightLaw<'a, F> {
     /// E\[1{escaped} weight^k\].
     pub fn escaped(&self, quadrature: &mut RayQuadrature<F>, tolerance: Tolerance) -> Moments {
         self.split_at_kinks(quadrature, tolerance);
-        let mut transmittance = || (-quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0]).exp();
+        let mut transmittance = || exp(-quadrature.integrate(tolerance, |_, sigma_t| [sigma_t]).value[0]);
         match self {
             Self::One => [transmittance(); HIGHEST_MOMENT],
             Self::OneIn(n) => weighted(*n, [transmittance(); HIGHEST_MOMENT]),
@@ -107,7 +108,7 @@ impl<'a, F: Extinction + Clone> WeightLaw<'a, F> {
             Self::Products(WeightProducts { growth, .. }) => {
                 let field = quadrature.field().clone();
                 let logarithms = quadrature.integrate(tolerance, |s, sigma_t| growth(&field, s, sigma_t));
-                logarithms.value.map(f64::exp)
+                logarithms.value.map(exp)
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::interval_bounds::{range_of, widened};
 use crate::{AnalyticCosine, Bounds, EmptySpace, FieldError, Homogeneous, Lattice, Line, Medium, Voxels};
+use fairflight_elementary::cos;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -173,7 +174,7 @@ impl BoxBounds for AnalyticCosine {
 fn cosine_range(from: f64, to: f64) -> (f64, f64) {
     let rounding = 8.0 * f64::EPSILON * from.abs().max(to.abs()).max(PI);
     let (from, to) = (from - rounding, to + rounding);
-    let (at_from, at_to) = (from.cos(), to.cos());
+    let (at_from, at_to) = (cos(from), cos(to));
     // Whether an even, or an odd, multiple of π is inside.
     let holds = |offset: f64| ((to - offset) / TAU).floor() >= ((from - offset) / TAU).ceil();
     let low = if holds(PI) { -1.0 } else { at_from.min(at_to) };

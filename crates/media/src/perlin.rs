@@ -5,6 +5,7 @@ mod enclosure;
 use crate::gradient_noise::GradientNoise;
 use crate::lattice_planes::PlaneCrossings;
 use crate::{FieldError, Line, Medium, MediumBreakpoints};
+use fairflight_elementary::pow;
 use glam::DVec3;
 
 /// The shape of a [`Perlin`] medium.
@@ -80,7 +81,7 @@ impl Perlin {
         FieldError::check_finite("offset", offset)?;
         FieldError::check_finite("abs(offset) + abs(scale)", offset.abs() + scale.abs())?;
 
-        let powers = |base: f64| (0..octaves).map(move |i| base.powf(f64::from(i)));
+        let powers = |base: f64| (0..octaves).map(move |i| pow(base, f64::from(i)));
         let total: f64 = powers(gain).sum();
         let highest = powers(lacunarity).fold(1.0, f64::max);
         FieldError::check_finite("the sum of the weights of all octaves", total)?;

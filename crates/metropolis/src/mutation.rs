@@ -1,5 +1,6 @@
 //! One step of a chain.
 
+use fairflight_elementary::exp;
 use fairflight_sources::UniformSource;
 
 /// Proposal of a chain's next state, which a target f gives its acceptance.
@@ -27,7 +28,7 @@ pub trait Mutation<X> {
 pub fn acceptance(ln_ratio: Option<f64>) -> f64 {
     ln_ratio.map_or(0.0, |ln| {
         debug_assert!(!ln.is_nan(), "a ratio that is no number");
-        ln.min(0.0).exp()
+        exp(ln.min(0.0))
     })
 }
 

@@ -1,6 +1,7 @@
 //! Steps of several sizes, chosen by where a state is seen: population Monte Carlo.
 
 use crate::Acceptance;
+use fairflight_elementary::pow;
 use fairflight_sources::{SmallStep, UniformSource};
 
 /// Small steps of several sizes K_1 … K_m, of which the pixel of a state chooses by probabilities of its own (lai-2007, antwerpen-2011 section 6.9).
@@ -74,7 +75,7 @@ impl Kernels {
         let edge = |part: u32| match part {
             0 => step.least(),
             _ if part == parts => step.largest(),
-            _ => step.least() * ratio.powf(f64::from(part) / f64::from(parts)),
+            _ => step.least() * pow(ratio, f64::from(part) / f64::from(parts)),
         };
         let size = |part| SmallStep::new(edge(part), edge(part + 1)).unwrap_or(step);
         Self::even((0..parts.min(1 + Self::MOST as u32)).map(size).collect(), resolution)

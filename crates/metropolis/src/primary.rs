@@ -1,6 +1,7 @@
 //! Metropolis sampling in primary sample space, over any integrator.
 
 use crate::{Experience, Film, Importance, Integrand, Kernels, Proposed, Splats, Target, Which};
+use fairflight_elementary::ln;
 use fairflight_scene::Spectrum;
 use fairflight_sources::{Layout, SmallStep, Step, UniformSource, Variates};
 
@@ -223,7 +224,7 @@ impl<C: Spectrum> Target<C> for Primary<'_, C> {
     }
 
     fn ln_present(&self) -> f64 {
-        self.present.target.ln()
+        ln(self.present.target)
     }
 
     fn kinds(&self) -> &[&'static str] {

@@ -2,6 +2,7 @@
 
 use crate::PhotonMap;
 use crate::tree::Near;
+use fairflight_elementary::{atan2, sin_cos};
 use fairflight_media::PhaseFunction;
 use fairflight_paths::extend::{Extended, Extension, OwnShare};
 use fairflight_paths::transport::{Lobe, Types, Vertex, World};
@@ -81,7 +82,7 @@ impl Square {
         } else {
             (2.0 * (a * (1.0 - a)).sqrt(), 1.0 - 2.0 * a)
         };
-        let (sin, cos) = (TAU * b).sin_cos();
+        let (sin, cos) = sin_cos(TAU * b);
         sine * (cos * self.x + sin * self.y) + cosine * self.axis
     }
 
@@ -89,7 +90,7 @@ impl Square {
     fn point(&self, direction: DVec3) -> (f64, f64) {
         let local = dvec3(direction.dot(self.x), direction.dot(self.y), direction.dot(self.axis));
         let a = if self.on_surface { local.x * local.x + local.y * local.y } else { 0.5 * (1.0 - local.z) };
-        (a, local.y.atan2(local.x) / TAU + 0.5)
+        (a, atan2(local.y, local.x) / TAU + 0.5)
     }
 }
 

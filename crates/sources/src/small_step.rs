@@ -1,6 +1,7 @@
 //! Small steps of one variate (kelemen-2002).
 
 use crate::LARGEST_VARIATE;
+use fairflight_elementary::log2;
 
 /// A small step on the circle [0, 1): as often forwards as backwards, by a distance between the least and the largest one, s_1 and s_2, of
 /// which every octave is as probable.
@@ -65,7 +66,7 @@ impl SmallStep {
     /// If they are not ordered: 2^-53 ≤ least ≤ largest ≤ 1/2.
     pub fn new(least: f64, largest: f64) -> Result<Self, SmallStepError> {
         if 1.0 <= least * POINTS as f64 && least <= largest && largest <= 0.5 {
-            Ok(Self { least, largest, log2_ratio: (largest / least).log2() })
+            Ok(Self { least, largest, log2_ratio: log2(largest / least) })
         } else {
             Err(SmallStepError::NotOrdered { least, largest })
         }

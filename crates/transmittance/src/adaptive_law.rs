@@ -14,6 +14,7 @@
 //! integrated through the polynomial of its own nodes, later cells by their Gauss rule. Cells are halved until the variance
 //! stands; what the last halving changed is the error.
 
+use fairflight_elementary::exp;
 use fairflight_media::Extinction;
 
 /// Gauss–Legendre on \[0, 1\], five points.
@@ -143,8 +144,8 @@ impl Node {
     /// The kernels of ν and λ from here to `other`: that of what is known, and that of what comes behind.
     fn kernels(&self, other: &Self) -> [[f64; 2]; 2] {
         let (distance, ratio) = (other.s - self.s, other.null / self.rate);
-        let of_variance = self.rate * (self.rate * distance - 2.0 * (other.grown - self.grown)).exp();
-        let of_lookups = self.rate * (-self.rate * distance).exp();
+        let of_variance = self.rate * exp(self.rate * distance - 2.0 * (other.grown - self.grown));
+        let of_lookups = self.rate * exp(-self.rate * distance);
         [[of_variance * (ratio - 1.0) * (ratio - 1.0), of_variance * ratio * ratio], [of_lookups, of_lookups]]
     }
 

@@ -23,6 +23,7 @@
 use crate::estimator::bounded;
 use crate::next_flight::of_variance;
 use crate::{ClosedForm, SignedProduct, Theory, TransmittanceEstimator};
+use fairflight_elementary::{exp, ln_1p};
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use smallvec::SmallVec;
@@ -57,7 +58,7 @@ impl<F: Majorant> TransmittanceEstimator<F> for Unidirectional {
         let mut s = 0.0;
         loop {
             let straight = -majorant * (length - s);
-            let score = weight.times_exp(straight) / (1.0 + straight.exp());
+            let score = weight.times_exp(straight) / (1.0 + exp(straight));
             sum += score;
             s += source.next_exponential() / majorant;
             if s >= length {
@@ -79,7 +80,7 @@ impl<F: Majorant> ClosedForm<F> for Unidirectional {
             return of_variance(0.0, 0.0, 0.0, 0.0);
         };
         let grown = quadrature.cumulative(tolerance, |_, sigma_t| [sigma_t, sigma_t * sigma_t / majorant]);
-        let b = |x: f64| 1.0 / (1.0 + (majorant * (length - x)).exp());
+        let b = |x: f64| 1.0 / (1.0 + exp(majorant * (length - x)));
         // In units of exp(A(S)), and the exponents of p_k in those of their end.
         let [thickness, total] = grown.at(length);
         let end = majorant * length - 2.0 * thickness;
@@ -88,19 +89,19 @@ impl<F: Majorant> ClosedForm<F> for Unidirectional {
             |x, sigma_t| {
                 let [before, a] = grown.at(x);
                 let w = 1.0 - sigma_t / majorant;
-                let density = majorant * w * w * (a - total + majorant * x - 2.0 * before - end).exp();
+                let density = majorant * w * w * exp(a - total + majorant * x - 2.0 * before - end);
                 [density * b(x), density * b(x) * b(x)]
             },
             |y, sigma_t, inner| {
                 let [before, a] = grown.at(y);
-                let straight = (tau - before - majorant * (length - y)).exp();
+                let straight = exp(tau - before - majorant * (length - y));
                 let h = straight - sigma_t / majorant;
-                let square = (a - total).exp() * h * h;
-                let scale = (end - (majorant * y - 2.0 * before)).exp();
+                let square = exp(a - total) * h * h;
+                let scale = exp(end - (majorant * y - 2.0 * before));
                 if scale > 1e280 {
                     return [majorant * square]; // p_k ≤ exp(A) b_y^k: far below rounding
                 }
-                let first = (2.0 * before - majorant * y - total).exp();
+                let first = exp(2.0 * before - majorant * y - total);
                 let p = |k: usize| first * b(0.0).powi(k as i32) + scale * inner[k - 1];
                 [majorant * (square - 2.0 * p(1) * h * straight + p(2) * straight * straight)]
             },
@@ -142,7 +143,7 @@ impl Point {
         (0.0 < s && s < field.length()).then(|| {
             let mut weight = self.weight;
             weight.multiply(1.0 - field.sigma_t(s) / field.majorant());
-            Self { s, weight, gaps: self.gaps + depth.exp() }
+            Self { s, weight, gaps: self.gaps + exp(depth) }
         })
     }
 
@@ -157,9 +158,9 @@ impl Point {
 #[inline]
 fn score(weight: SignedProduct, gaps: f64, depth: f64) -> f64 {
     if depth < 700.0 {
-        return weight.over(&SignedProduct::of(2.0 + (gaps + depth.exp())));
+        return weight.over(&SignedProduct::of(2.0 + (gaps + exp(depth))));
     }
-    weight.times_exp(-depth - ((2.0 + gaps) * (-depth).exp()).ln_1p())
+    weight.times_exp(-depth - ln_1p((2.0 + gaps) * exp(-depth)))
 }
 
 impl<F: Majorant> TransmittanceEstimator<F> for Bidirectional {

@@ -1,6 +1,7 @@
 //! The moments of a product of few or many independent factors, from those of each.
 
 use crate::{HIGHEST_MOMENT, MOMENTS};
+use fairflight_elementary::{exp, exp_m1, ln, ln_1p};
 
 /// The law of Π (1 + X_j) for independent X_j of mean zero: of an estimate in units of its mean, if it is a product.
 ///
@@ -31,7 +32,7 @@ impl FactorLaw {
         factor[0] = 1.0;
         factor[2..].copy_from_slice(moments);
         self.central = compound(&self.central, 1.0, 1.0, &factor);
-        self.log_second += moments[0].ln_1p();
+        self.log_second += ln_1p(moments[0]);
     }
 
     /// E\[(Π − 1)^n\], n = 2 … 8.
@@ -53,7 +54,7 @@ impl FactorLaw {
     #[must_use]
     pub fn log_relative_variance(&self) -> f64 {
         let log = self.log_second;
-        if log > 1.0 { log + (-(-log).exp()).ln_1p() } else { log.exp_m1().ln() }
+        if log > 1.0 { log + ln_1p(-exp(-log)) } else { ln(exp_m1(log)) }
     }
 }
 

@@ -18,6 +18,7 @@ use crate::allowance::{Allowance, NODES};
 use crate::factors::{BINOMIALS, FactorLaw, compound, powers};
 use crate::jittered_ratio::Strata;
 use crate::{HIGHEST_MOMENT, MOMENTS, Theory};
+use fairflight_elementary::{exp, exp_m1};
 use fairflight_media::{BoundCell, Epsilon, Extinction, RayQuadrature, Tolerance};
 
 /// A stratum, or a cell without any (of the optical thickness 0).
@@ -60,16 +61,16 @@ pub(crate) fn theory_of<F: Extinction>(
     for (part, (mean, deviations)) in parts.iter().zip(means.iter().zip(&deviations)) {
         if part.thickness > 0.0 {
             law.multiply(&relative_moments(part.thickness, mean[0], deviations));
-            lookups += part.thickness.exp_m1() / part.thickness;
+            lookups += exp_m1(part.thickness) / part.thickness;
         }
     }
     // dVar/Var = dS exp(S)/(exp(S) − 1), S = ln E[(T̂/T)²]; in a stratum dS is at most (e exp(e))² times the error of d_2.
-    let greatest = parts.iter().map(|part| part.thickness * part.thickness.exp()).fold(0.0, f64::max);
+    let greatest = parts.iter().map(|part| part.thickness * exp(part.thickness)).fold(0.0, f64::max);
     let error = greatest * greatest * total.error[0];
     Theory {
         relative_central: law.relative_central(),
         log_relative_variance: law.log_relative_variance(),
-        relative_variance_error: if error == 0.0 { 0.0 } else { error / -(-law.log_second()).exp_m1() },
+        relative_variance_error: if error == 0.0 { 0.0 } else { error / -exp_m1(-law.log_second()) },
         ..Theory::mean_only(lookups)
     }
 }
@@ -81,7 +82,7 @@ fn count(cells: &[BoundCell], epsilon: Epsilon) -> (f64, f64) {
         let Strata { count, thickness, .. } = Strata::of(cell, from, epsilon);
         strata += count.max(1.0);
         if thickness > 0.0 {
-            lookups += count * (thickness.exp_m1() / thickness);
+            lookups += count * (exp_m1(thickness) / thickness);
         }
         from = cell.to;
     }
@@ -132,7 +133,7 @@ fn relative_moments(e: f64, z: f64, deviations: &[f64; MOMENTS]) -> [f64; MOMENT
         order -= 1.0;
     }
     let v = compound(&central, z, mean, &delta);
-    let unit = powers(-e * (e * z).exp());
+    let unit = powers(-e * exp(e * z));
     std::array::from_fn(|i| unit[i + 2] * v[i + 2])
 }
 

@@ -3,6 +3,7 @@
 use crate::allowance::Allowance;
 use crate::woodcock::{collides, expected_lookups};
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use fairflight_elementary::{exp, exp_m1, ln, ln_1p};
 use fairflight_media::{Breakpoints, Cumulative, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -56,7 +57,7 @@ impl LineIntegral {
 
 /// p_V = 1 − exp(−majorant · S): the probability of a collision with the majorant's medium.
 fn collision_probability<F: Majorant>(field: &F) -> f64 {
-    -(-field.majorant() * field.length()).exp_m1()
+    -exp_m1(-field.majorant() * field.length())
 }
 
 impl LineIntegral {
@@ -99,12 +100,12 @@ impl LineIntegral {
             };
             let u = fraction * p_volume;
             // Rounding may put u on p_V itself: such a flight counts as escaped, at a probability below 2^-50.
-            scores += match collides(field, -(-u).ln_1p(), source) {
+            scores += match collides(field, -ln_1p(-u), source) {
                 Some((s, sigma_t)) => collision(s, sigma_t, source),
                 None => end,
             };
         }
-        let mut sum = end * (-field.majorant() * field.length()).exp();
+        let mut sum = end * exp(-field.majorant() * field.length());
         sum += scores * (p_volume / n);
         sum
     }
@@ -134,14 +135,14 @@ struct Escape<'a, F> {
 impl<F: Majorant> Escape<'_, F> {
     fn probability(&self, u: f64) -> f64 {
         let majorant = self.field.majorant();
-        let t = (-(-u * self.p_volume).ln_1p() / majorant).min(self.field.length());
+        let t = (-ln_1p(-u * self.p_volume) / majorant).min(self.field.length());
         let behind = self.total - self.optical_thickness.at(t)[0];
-        ((1.0 - self.field.sigma_t(t) / majorant) * (-behind).exp()).clamp(0.0, 1.0)
+        ((1.0 - self.field.sigma_t(t) / majorant) * exp(-behind)).clamp(0.0, 1.0)
     }
 
     /// The variate whose first collision is at `t`.
     fn variate(&self, t: f64) -> f64 {
-        -(-self.field.majorant() * t).exp_m1() / self.p_volume
+        -exp_m1(-self.field.majorant() * t) / self.p_volume
     }
 }
 
@@ -154,7 +155,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         }
         let n = f64::from(self.splits);
         let lookups = n * expected_lookups(quadrature, tolerance) / p_volume;
-        if tau - 3.0 * n.ln() > RARE {
+        if tau - 3.0 * ln(n) > RARE {
             let depth = quadrature.field().majorant() * quadrature.field().length();
             return of_rare_escapes((tau, depth), p_volume / n, lookups);
         }
@@ -162,7 +163,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         let field = quadrature.field();
         let total = cumulative.at(field.length())[0];
         let escape = Escape { field, optical_thickness: cumulative, total, p_volume };
-        let transmittance = (-tau).exp();
+        let transmittance = exp(-tau);
         // E[number of escapes] = n (T − p_S) / p_V
         let mean = n * (transmittance - (1.0 - p_volume)) / p_volume;
         let breaks: Vec<f64> = field.breakpoints().iter().map(|&t| (n * escape.variate(t)).fract()).collect();
@@ -180,7 +181,7 @@ impl<F: Majorant + Breakpoints> ClosedForm<F> for LineIntegral {
         }
         Theory {
             relative_central,
-            log_relative_variance: relative_central[0].ln(),
+            log_relative_variance: ln(relative_central[0]),
             relative_variance_error: moments.error[0] / moments.value[0],
             ..Theory::mean_only(lookups)
         }
@@ -197,11 +198,11 @@ const RARE: f64 = 36.8;
 /// 2n² T, below rounding for τ − 3 ln n > 36.8, and so is the mean in (N − E\[N\])^k. Hence E\[(N − E)^k\]/T^k = m̂ exp((k − 1) τ).
 fn of_rare_escapes((tau, depth): (f64, f64), weight: f64, lookups: f64) -> Theory {
     // m̂ weight = 1 − exp(τ − μS).
-    let log_escapes = (-(tau - depth).exp_m1()).max(0.0).ln() - weight.ln();
-    let log = |k: f64| k * weight.ln() + log_escapes + (k - 1.0) * tau;
+    let log_escapes = ln((-exp_m1(tau - depth)).max(0.0)) - ln(weight);
+    let log = |k: f64| k * ln(weight) + log_escapes + (k - 1.0) * tau;
     Theory {
         relative_mean: 1.0,
-        relative_central: std::array::from_fn(|i| log(i as f64 + 2.0).exp()),
+        relative_central: std::array::from_fn(|i| exp(log(i as f64 + 2.0))),
         log_relative_variance: log(2.0),
         relative_variance_error: 0.0,
         ..Theory::mean_only(lookups)

@@ -3,6 +3,7 @@
 use crate::estimator::bounded;
 use crate::woodcock::expected_lookups;
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
+use fairflight_elementary::{exp, ln};
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use std::cell::Cell;
@@ -116,9 +117,9 @@ impl<F: Majorant> ClosedForm<F> for NextFlight {
             |s, sigma_t, [before, grown]| {
                 let g = majorant * (length - s) - (tau - before);
                 steepest.set(steepest.get().max(-g));
-                let jump = sigma_t - majorant * (-g).exp();
+                let jump = sigma_t - majorant * exp(-g);
                 // In units of exp(A(S)), which may overflow.
-                [(grown - total).exp() * (jump * jump / majorant + ending(sigma_t))]
+                [exp(grown - total) * (jump * jump / majorant + ending(sigma_t))]
             },
         );
         if steepest.get() < MOST_EXPONENT {
@@ -151,9 +152,9 @@ impl<F: Majorant> ClosedForm<F> for NextFlight {
             |s, sigma_t, [before, grown]| {
                 let g = majorant * (length - s) - (tau - before);
                 let (below, above) = (g.min(0.0), g.max(0.0));
-                let jump = (-above).exp() - sigma_t / majorant * below.exp();
-                [(grown - scale - 2.0 * below).exp() * majorant * jump * jump
-                    + (grown - scale).exp() * ending(sigma_t)]
+                let jump = exp(-above) - sigma_t / majorant * exp(below);
+                [exp(grown - scale - 2.0 * below) * majorant * jump * jump
+                    + exp(grown - scale) * ending(sigma_t)]
             },
         );
         of_variance(scale, variance.value[0], variance.error[0], lookups)
@@ -173,9 +174,9 @@ pub(crate) fn of_variance(scale: f64, variance: f64, error: f64, lookups: f64) -
             ..Theory::mean_only(lookups)
         };
     }
-    let log_relative_variance = scale + variance.ln();
+    let log_relative_variance = scale + ln(variance);
     let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
-    relative_central[0] = log_relative_variance.exp();
+    relative_central[0] = exp(log_relative_variance);
     let relative_variance_error = error / variance;
     Theory { relative_central, log_relative_variance, relative_variance_error, ..Theory::mean_only(lookups) }
 }

@@ -2,6 +2,7 @@
 
 use crate::next_flight::of_variance;
 use crate::{ClosedForm, ProductLaw, SignedProduct, Theory, TransmittanceEstimator};
+use fairflight_elementary::{exp, ln, ln_1p};
 use fairflight_media::{Extinction, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -236,21 +237,21 @@ fn remainder(y: f64, k: f64) -> f64 {
 /// from k ≥ |y| for y < 0, with the same rule upwards from r_0 = exp(y) below.
 fn log_remainders(y: f64, n: usize) -> Vec<f64> {
     let mut logs = vec![0.0; n + 1];
-    logs[n] = remainder(y, n as f64).ln();
+    logs[n] = ln(remainder(y, n as f64));
     let turn = if y < 0.0 { (-y).ceil() as usize } else { 0 };
     for k in (turn..n).rev() {
         let factor = y / (k + 1) as f64;
         logs[k] = if y < 0.0 {
-            (factor * logs[k + 1].exp()).ln_1p()
+            ln_1p(factor * exp(logs[k + 1]))
         } else {
             // ln(1 + exp(x)): exp(x) may overflow.
-            let x = factor.ln() + logs[k + 1];
-            x.max(0.0) + (-x.abs()).exp().ln_1p()
+            let x = ln(factor) + logs[k + 1];
+            x.max(0.0) + ln_1p(exp(-x.abs()))
         };
     }
-    let mut r = y.exp();
+    let mut r = exp(y);
     for (k, log) in logs.iter_mut().enumerate().take(turn) {
-        *log = r.ln();
+        *log = ln(r);
         r = (1.0 - r) * (k + 1) as f64 / -y;
     }
     logs
@@ -282,18 +283,18 @@ impl PSeries {
                     PSeriesVersion::Cmf if k <= self.sure as usize => (0.0, 0.0),
                     PSeriesVersion::Cmf => {
                         let go_on = (pivot / order).min(1.0);
-                        (go_on.ln(), 1.0 - go_on)
+                        (ln(go_on), 1.0 - go_on)
                     }
                     // h_{k−1} of a Poisson law, and P_k/P_{k−1} = (t_c/k) h_{k−1}/h_k
-                    _ => ((pivot / order).ln() + tails[k] - tails[k - 1], (-tails[k - 1]).exp()),
+                    _ => (ln(pivot / order) + tails[k] - tails[k - 1], exp(-tails[k - 1])),
                 };
                 log_reached += log_go_on;
-                lookups += f64::exp(log_reached);
-                log_factorial += order.ln();
+                lookups += exp(log_reached);
+                log_factorial += ln(order);
                 let decided = spread + y * y * stop;
-                let power = if k == 1 { 0.0 } else { (order - 1.0) * q.ln() };
+                let power = if k == 1 { 0.0 } else { (order - 1.0) * ln(q) };
                 let log =
-                    -2.0 * y + power - 2.0 * log_factorial + 2.0 * remainders[k] - log_reached + decided.ln();
+                    -2.0 * y + power - 2.0 * log_factorial + 2.0 * remainders[k] - log_reached + ln(decided);
                 (log, (order - 1.0) / q + 1.0 / decided)
             })
             .collect();
@@ -301,13 +302,10 @@ impl PSeries {
         if scale == f64::NEG_INFINITY {
             return of_variance(0.0, 0.0, 0.0, lookups);
         }
-        let sum: f64 = terms.iter().map(|(log, _)| (log - scale).exp()).sum();
+        let sum: f64 = terms.iter().map(|(log, _)| exp(log - scale)).sum();
         // d Var/dv
-        let slope: f64 = terms
-            .iter()
-            .filter(|(log, _)| *log > scale - 700.0)
-            .map(|(log, d)| (log - scale).exp() * d)
-            .sum();
+        let slope: f64 =
+            terms.iter().filter(|(log, _)| *log > scale - 700.0).map(|(log, d)| exp(log - scale) * d).sum();
         of_variance(scale, sum, slope * error, lookups)
     }
 }
@@ -327,7 +325,7 @@ impl PSeries {
             let order = k as f64;
             let arrives = lives * magnitude / order;
             let coin = f64::min(arrives, 0.25 * f64::min(1.0, lives));
-            sum += (2.0 * (remainder - y)).exp() * (square * spread / (order * order) + coin);
+            sum += exp(2.0 * (remainder - y)) * (square * spread / (order * order) + coin);
             square = square * q / (order * order) + coin;
             lives = arrives;
         }

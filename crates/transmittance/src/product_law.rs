@@ -14,6 +14,7 @@
 //! since J_1 = −∫ σ_diff cancels. The J_j are what quadrature delivers; nothing here cancels for a small variance.
 
 use crate::Theory;
+use fairflight_elementary::{exp, exp_m1, ln, ln_1p};
 
 /// The highest power whose moment is computed: the standard error of a measured variance needs the 4th, the test whether
 /// that error may be used with a normal law the 6th and 8th.
@@ -45,7 +46,7 @@ impl ProductLaw {
     #[must_use]
     pub fn log_relative_variance(&self) -> f64 {
         let j2 = self.integrals[0];
-        if j2 > 1.0 { j2 + (-(-j2).exp()).ln_1p() } else { j2.exp_m1().ln() }
+        if j2 > 1.0 { j2 + ln_1p(-exp(-j2)) } else { ln(exp_m1(j2)) }
     }
 
     /// The theory of an unbiased estimate with this law, where J_2 has an absolute `error` and as many `lookups` are
@@ -56,7 +57,7 @@ impl ProductLaw {
             relative_mean: 1.0,
             relative_central: self.relative_central(),
             log_relative_variance: self.log_relative_variance(),
-            relative_variance_error: error / -(-self.integrals[0]).exp_m1(),
+            relative_variance_error: error / -exp_m1(-self.integrals[0]),
             ..Theory::mean_only(lookups)
         }
     }
@@ -117,7 +118,7 @@ impl ProductLaw {
 /// exp(x) − 1 − x, without cancellation near 0.
 fn exp_minus_linear(x: f64) -> f64 {
     if x.abs() > 0.1 {
-        return x.exp_m1() - x;
+        return exp_m1(x) - x;
     }
     let (mut sum, mut term) = (0.0, x);
     for n in 2..=14 {

@@ -1,6 +1,7 @@
 //! A majorant that is found while tracking (misso-2023). **Biased** at every moment, consistent in the long run, and labelled so.
 
 use crate::SignedProduct;
+use fairflight_elementary::exp_m1;
 use fairflight_media::{Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -83,7 +84,7 @@ impl ProgressiveMajorant {
     ) -> f64 {
         quadrature.split_at_zeros(tolerance, &|_, sigma_t| sigma_t - self.majorant);
         let above = quadrature.integrate(tolerance, |_, sigma_t| [(sigma_t - self.majorant).max(0.0)]);
-        above.value[0].exp_m1()
+        exp_m1(above.value[0])
     }
 }
 

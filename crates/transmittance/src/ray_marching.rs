@@ -2,6 +2,7 @@
 
 use crate::allowance::Allowance;
 use crate::{ClosedForm, MOMENTS, Theory, TransmittanceEstimator};
+use fairflight_elementary::{exp, ln};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use std::cell::Cell;
@@ -58,7 +59,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for RayMarching {
             Offset::Fixed => 0.5,
             Offset::Jittered => source.next_uniform(),
         };
-        (-self.thickness(field, offset)).exp()
+        exp(-self.thickness(field, offset))
     }
 
     fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
@@ -70,7 +71,7 @@ impl<F: Breakpoints> ClosedForm<F> for RayMarching {
     fn theory(&self, quadrature: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let field = quadrature.field();
         // In units of T: exp(tau − X), which does not underflow with T.
-        let relative = |offset: f64| (tau - self.thickness(field, offset)).exp();
+        let relative = |offset: f64| exp(tau - self.thickness(field, offset));
         let lookups = f64::from(self.steps);
         if self.offset == Offset::Fixed || field.length() == 0.0 {
             return Theory { relative_mean: relative(0.5), lookups, ..Theory::exact() };
@@ -89,7 +90,7 @@ impl RayMarching {
         tau: f64,
         tolerance: Tolerance,
     ) -> Option<Theory> {
-        let relative = |offset: f64| (tau - self.thickness(field, offset)).exp();
+        let relative = |offset: f64| exp(tau - self.thickness(field, offset));
         let lookups = f64::from(self.steps);
         let steps = lookups / field.length();
         let breaks: Vec<f64> = field.breakpoints().iter().map(|s| (s * steps).fract()).collect();
@@ -97,7 +98,7 @@ impl RayMarching {
         let mean = allowance.integral(&breaks, tolerance, lookups, |offset| {
             let exponent = tau - self.thickness(field, offset);
             greatest.set(greatest.get().max(exponent));
-            [exponent.exp()]
+            [exp(exponent)]
         })?;
         if greatest.get() > MOST_EXPONENT {
             let exponent = |offset: f64| tau - self.thickness(field, offset);
@@ -117,7 +118,7 @@ impl RayMarching {
         Some(Theory {
             relative_mean: mean,
             relative_central: central.value,
-            log_relative_variance: central.value[0].ln(),
+            log_relative_variance: ln(central.value[0]),
             relative_variance_error: central.error[0] / central.value[0],
             ..Theory::mean_only(lookups)
         })
@@ -149,7 +150,7 @@ fn of_great_exponents(
         let integral = allowance.integral(breaks, tolerance, lookups, |offset| {
             let exponent = exponent(offset);
             found.set(found.get().max(exponent));
-            [(exponent - greatest).exp()]
+            [exp(exponent - greatest)]
         })?;
         mean = integral.value[0];
         if mean.is_finite() {
@@ -157,15 +158,15 @@ fn of_great_exponents(
         }
     }
     let central = allowance.integral(breaks, tolerance, lookups, |offset| -> [f64; MOMENTS] {
-        let deviation = (exponent(offset) - greatest).exp() - mean;
+        let deviation = exp(exponent(offset) - greatest) - mean;
         std::array::from_fn(|i| deviation.powi(i as i32 + 2))
     });
-    let relative_mean = (greatest + mean.ln()).exp();
+    let relative_mean = exp(greatest + ln(mean));
     let Some(central) = central else {
         return Some(Theory { relative_mean, ..Theory::without(allowance.unreached(2), lookups) });
     };
-    let log = |i: usize| central.value[i].abs().ln() + (i as f64 + 2.0) * greatest;
-    let moment = |i: usize| central.value[i].signum() * log(i).exp();
+    let log = |i: usize| ln(central.value[i].abs()) + (i as f64 + 2.0) * greatest;
+    let moment = |i: usize| central.value[i].signum() * exp(log(i));
     Some(Theory {
         relative_mean,
         relative_central: std::array::from_fn(|i| if central.value[i] == 0.0 { 0.0 } else { moment(i) }),

@@ -1,6 +1,7 @@
 //! Regular tracking: the closed form itself.
 
 use crate::{ClosedForm, Theory, TransmittanceEstimator};
+use fairflight_elementary::exp;
 use fairflight_media::{OpticalThickness, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -14,7 +15,7 @@ pub struct Regular;
 impl<F: OpticalThickness> TransmittanceEstimator<F> for Regular {
     #[inline]
     fn estimate(&self, field: &F, _source: &mut impl UniformSource) -> f64 {
-        (-field.optical_thickness(0.0, field.length())).exp()
+        exp(-field.optical_thickness(0.0, field.length()))
     }
 
     fn admits(&self, _field: &F, _s: f64, sigma_t: f64) -> bool {

@@ -1,6 +1,7 @@
 //! Residual ratio tracking between bounds in cells: what production renderers can always afford.
 
 use crate::{ClosedForm, MOMENTS, ProductLaw, SignedProduct, Theory, TransmittanceEstimator};
+use fairflight_elementary::exp_m1;
 use fairflight_media::{BoundCell, BoundedInCells, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -118,7 +119,7 @@ impl<F: BoundedInCells> ClosedForm<F> for ResidualCells {
             relative_central: law.relative_central(),
             log_relative_variance: law.log_relative_variance(),
             // d Var / Var = dJ_2 exp(J_2) / (exp(J_2) − 1)
-            relative_variance_error: collisions.error[0] / -(-collisions.value[0]).exp_m1(),
+            relative_variance_error: collisions.error[0] / -exp_m1(-collisions.value[0]),
             ..Theory::mean_only(
                 cells.iter().zip(widths).map(|(cell, width)| self.rate * cell.range() * width).sum(),
             )

@@ -1,5 +1,7 @@
 //! Products of very many factors and sums of such, without under- or overflow.
 
+use fairflight_elementary::{exp, ln};
+
 /// A product, or a sum of products, kept as mantissa · 2^(128 · scale).
 ///
 /// A walk of a million collisions multiplies a million weights; as a plain double the product is 0 or infinite long before
@@ -34,7 +36,7 @@ impl SignedProduct {
     pub fn exp(exponent: f64) -> Self {
         let scale = (exponent / (f64::from(STEP) * std::f64::consts::LN_2)).round();
         let rest = exponent - scale * f64::from(STEP) * std::f64::consts::LN_2;
-        Self { mantissa: rest.exp(), scale: scale as i64 }
+        Self { mantissa: exp(rest), scale: scale as i64 }
     }
 
     /// Quotient of this product over another, rounded once: 0 or infinite only where the quotient is. The other must not be 0.
@@ -146,9 +148,9 @@ impl SignedProduct {
     #[must_use]
     pub fn times_exp(&self, exponent: f64) -> f64 {
         if self.scale == 0 && exponent.abs() < 500.0 {
-            return self.mantissa * exponent.exp();
+            return self.mantissa * exp(exponent);
         }
-        self.sign() * (self.ln_abs() + exponent).exp()
+        self.sign() * exp(self.ln_abs() + exponent)
     }
 
     /// −1, 0 or 1; NaN for NaN.
@@ -161,7 +163,7 @@ impl SignedProduct {
     #[must_use]
     pub fn ln_abs(&self) -> f64 {
         let scale = self.scale as f64 * f64::from(STEP) * std::f64::consts::LN_2;
-        self.mantissa.abs().ln() + scale
+        ln(self.mantissa.abs()) + scale
     }
 }
 

@@ -7,6 +7,7 @@ use crate::{
     ClosedForm, Interaction, ProductLaw, SignedProduct, Theory, TransmittanceEstimator, TransmittanceFunction,
 };
 use fairflight_collision::CollisionModel;
+use fairflight_elementary::exp;
 use fairflight_media::{
     Extinction, InvertOpticalThickness, OpticalThickness, RayQuadrature, Tolerance, rounding_of_difference,
 };
@@ -141,7 +142,7 @@ impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThic
     }
 
     fn main_transmittance(&self, s: f64) -> f64 {
-        (-self.control.optical_thickness(0.0, s)).exp()
+        exp(-self.control.optical_thickness(0.0, s))
     }
 }
 
@@ -168,7 +169,7 @@ impl<F: Extinction, M: CollisionModel, C: OpticalThickness, R: InvertOpticalThic
         let lookups = quadrature.integrate_nested(
             tolerance,
             |s, sigma_t| [at(s, sigma_t).map_or(0.0, |(sampling, t)| sampling * (1.0 - t.probability))],
-            |s, _, [ended]| [self.sampling.sigma_t(s) * (-ended).exp()],
+            |s, _, [ended]| [self.sampling.sigma_t(s) * exp(-ended)],
         );
         ProductLaw::new(collisions.value).theory(collisions.error[0], lookups.value[0])
     }

@@ -1,6 +1,7 @@
 //! Woodcock tracking as an estimator of transmittance: 1 if the flight escapes, else 0 (raab-2008 algorithm 1).
 
 use crate::{ClosedForm, ProductLaw, Theory, TransmittanceEstimator};
+use fairflight_elementary::exp;
 use fairflight_media::{Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -80,10 +81,7 @@ pub(crate) fn expected_lookups<F: Majorant>(quadrature: &mut RayQuadrature<F>, t
     if majorant == 0.0 {
         return 0.0;
     }
-    let free = quadrature.integrate_nested(
-        tolerance,
-        |_, sigma_t| [sigma_t],
-        |_, _, [tau]| [majorant * (-tau).exp()],
-    );
+    let free =
+        quadrature.integrate_nested(tolerance, |_, sigma_t| [sigma_t], |_, _, [tau]| [majorant * exp(-tau)]);
     free.value[0]
 }

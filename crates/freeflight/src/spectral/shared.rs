@@ -4,6 +4,7 @@ use super::{SpectralFlight, SpectralFreeFlight};
 use crate::theory::{HIGHEST_MOMENT, Moments, powers, times_exp};
 use crate::weight_law::WeightProducts;
 use crate::{ClosedForm, WeightLaw};
+use fairflight_elementary::exp_m1;
 use fairflight_media::{
     InvertOpticalThickness, RayQuadrature, SpectralExtinction, SpectralOpticalThickness, Tolerance,
     Wavelength,
@@ -100,7 +101,7 @@ impl<F: SpectralExtinction<N>, R: InvertOpticalThickness, const N: usize> Closed
         _tolerance: Tolerance,
     ) -> Option<Moments> {
         let drawn = self.sampling.optical_thickness(0.0, self.sampling.length());
-        Some([-(-drawn).exp_m1(); HIGHEST_MOMENT])
+        Some([-exp_m1(-drawn); HIGHEST_MOMENT])
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![expect(clippy::excessive_precision, reason = "QUADPACK's digits, as published")]
 
+use fairflight_elementary::pow;
 use std::sync::LazyLock;
 
 /// Nodes per panel.
@@ -110,7 +111,7 @@ impl Rule {
         let spread: f64 = values.iter().zip(&self.kronrod).map(|(v, w)| w * (v - mean).abs()).sum();
         let mut error = (kronrod - gauss).abs();
         if spread > 0.0 && error > 0.0 {
-            error = spread * (200.0 * error / spread).powf(1.5).min(1.0);
+            error = spread * pow(200.0 * error / spread, 1.5).min(1.0);
         }
         let rounding = 10.0 * f64::EPSILON * magnitude;
         PanelIntegral {

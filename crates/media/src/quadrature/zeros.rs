@@ -2,6 +2,7 @@
 
 use super::panels::Panels;
 use super::rule::{Expansion, RULE, value_of};
+use fairflight_elementary::cos;
 
 /// Points at which the expansion of a panel is looked at: it has 15 zeros at most, and follows what the panels resolve.
 const LOOKS: usize = 48;
@@ -37,7 +38,7 @@ impl<T> Panels<T> {
 fn zeros_of(expansion: &Expansion) -> Vec<f64> {
     let at = |x: f64| value_of(expansion, x);
     // Denser towards the ends, as the zeros of polynomials are.
-    let place = |i: usize| -(std::f64::consts::PI * i as f64 / LOOKS as f64).cos();
+    let place = |i: usize| -cos(std::f64::consts::PI * i as f64 / LOOKS as f64);
     let mut points: Vec<(f64, f64)> = (0..=LOOKS).map(|i| (place(i), at(place(i)))).collect();
     let mut extrema = Vec::new();
     for triple in points.windows(3) {

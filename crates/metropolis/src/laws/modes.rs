@@ -1,6 +1,7 @@
 //! Two modes on [0, 1): a target of which the image is known, on which chains are tried.
 
 use crate::Splats;
+use fairflight_elementary::exp;
 use fairflight_sources::UniformSource;
 
 /// Two modes of unequal mass, far apart: centre, width, height. Steps of at most 0.04 never cross.
@@ -9,7 +10,7 @@ const MODES: [[f64; 3]; 2] = [[0.25, 0.06, 3.0], [0.75, 0.08, 1.0]];
 /// The height of the two modes together.
 #[must_use]
 pub fn height(u: f64) -> f64 {
-    MODES.iter().map(|[centre, width, height]| height * (-0.5 * ((u - centre) / width).powi(2)).exp()).sum()
+    MODES.iter().map(|[centre, width, height]| height * exp(-0.5 * ((u - centre) / width).powi(2))).sum()
 }
 
 /// The pixel of a variate, of two: that of the left half, or of the right one.

@@ -5,6 +5,7 @@
 //! antwerpen-2011 eq. 3.18 and 3.19 print the inverse, eq. 6.5 has it as here.
 
 use super::{PathSite, PathState, PathWorld};
+use fairflight_elementary::ln;
 use std::ops::Range;
 
 /// The way in which an edge of a proposal came to be.
@@ -78,5 +79,5 @@ pub(super) fn ln_product(
     for i in edges.start.max(1)..=edges.end.min(path.len() - 1) {
         product *= path.vertices[i].scatter(world, path.edges[i - 1].direction, path.edges[i].direction);
     }
-    product.ln() + ln_transmittance
+    ln(product) + ln_transmittance
 }

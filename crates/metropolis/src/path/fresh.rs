@@ -6,6 +6,7 @@ use crate::Mutation;
 use fairflight_bidirectional::laws::{LnDensities, Path};
 use fairflight_bidirectional::{Exact, Found, LightEnd, Place, Site, Strategy, Subpath, Walking, Weigh};
 use fairflight_collision::Version;
+use fairflight_elementary::{exp, ln};
 use fairflight_media::LineThickness;
 use fairflight_paths::transport::{Emitters, Light, Types, World};
 use fairflight_paths::{Heuristic, SamplingExtinction, Walk};
@@ -106,7 +107,7 @@ impl<'s, M: LineThickness, R: SamplingExtinction + Copy, W: Types<Medium = M, Sa
                 PathSite::Medium { sigma_t } => Site::Medium { sigma_t },
                 PathSite::Diffuse { normal, surface } => Site::Diffuse { normal, surface },
                 PathSite::Smooth { normal, surface, ratio, share, .. } => {
-                    ln_shares += share.ln();
+                    ln_shares += ln(share);
                     Site::Smooth { normal, surface, ratio }
                 }
                 _ => unreachable!("light is scattered between the ends of a path"),
@@ -124,23 +125,23 @@ impl<'s, M: LineThickness, R: SamplingExtinction + Copy, W: Types<Medium = M, Sa
             Path { places, end: LightEnd::new(&self.weigh.world, self.weigh.emitters, light, last.position) };
         let [lights, parts] = self.counts().map(|count| count as f64);
         let ln_albedo = |i: usize| {
-            if x.vertices[i].is_in_medium() { x.vertices[i].colour.max_element().ln() } else { 0.0 }
+            if x.vertices[i].is_in_medium() { ln(x.vertices[i].colour.max_element()) } else { 0.0 }
         };
-        let ln = self.weigh.ln_densities(&path, &mut self.densities);
+        let densities = self.weigh.ln_densities(&path, &mut self.densities);
         let of_strategy = |t: usize| {
-            ln[t - 1]
+            densities[t - 1]
                 + match k + 1 - t {
-                    0 if matches!(last.site, PathSite::Far(_)) => -parts.ln(),
+                    0 if matches!(last.site, PathSite::Far(_)) => -ln(parts),
                     0 => 0.0,
-                    1 => ln_albedo(t - 1) - lights.ln(),
+                    1 => ln_albedo(t - 1) - ln(lights),
                     _ if t == 1 => ln_albedo(1),
                     _ => ln_albedo(t - 1) + ln_albedo(t),
                 }
         };
         let greatest = (1..=k + 1).map(of_strategy).fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = (1..=k + 1).map(|t| (of_strategy(t) - greatest).exp()).sum();
+        let sum: f64 = (1..=k + 1).map(|t| exp(of_strategy(t) - greatest)).sum();
         self.places = path.places;
-        k as f64 * self.more.ln() - (k as f64 + 1.0).ln() + ln_shares + greatest + sum.ln()
+        k as f64 * ln(self.more) - ln(k as f64 + 1.0) + ln_shares + greatest + ln(sum)
     }
 
     /// Walks as far as a strategy asks. Returns the end on the light where that comes from no light subpath; `None` where the walks did not get so far.
@@ -202,7 +203,7 @@ impl<M: LineThickness, R: SamplingExtinction + Copy, W: Types<Medium = M, Sampli
         y: &mut PathState,
         mut source: &mut dyn UniformSource,
     ) -> Option<f64> {
-        let k = 2 + (source.next_exponential() / -self.more.ln()) as u32;
+        let k = 2 + (source.next_exponential() / -ln(self.more)) as u32;
         let t = 1 + (source.next_uniform() * f64::from(k + 1)) as u32;
         let strategy = Strategy { light: k + 1 - t, eye: t };
         let end = self.walk(strategy, &mut source)?;

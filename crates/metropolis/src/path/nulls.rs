@@ -1,6 +1,7 @@
 //! Transmittance of edges where it has no closed form: null collisions as part of the state.
 
 use super::EdgeTransmittance;
+use fairflight_elementary::ln_1p;
 use fairflight_media::{Extinction, Medium, Ray};
 use fairflight_sources::UniformSource;
 
@@ -65,7 +66,7 @@ impl NullCollisions {
             let ratio = ray.sigma_t(s) / self.majorant;
             debug_assert!((0.0..=1.0).contains(&ratio), "the majorant is none: σ_t/μ = {ratio}");
             if keep(ratio, source) {
-                sum += (-ratio).ln_1p();
+                sum += ln_1p(-ratio);
             }
         }
     }

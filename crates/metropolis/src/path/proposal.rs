@@ -3,6 +3,7 @@
 use super::coordinates::{Made, ln_product};
 use super::vertex::Continuation;
 use super::{PathEdge, PathSite, PathState, PathVertex, PathWorld, Towards};
+use fairflight_elementary::{exp, ln, pow, sin_cos};
 use fairflight_media::Line;
 use fairflight_paths::transport::Light;
 use fairflight_scene::{Material, Segment};
@@ -32,21 +33,21 @@ impl StepSizes {
     }
 
     fn size([least, greatest]: [f64; 2], u: f64) -> f64 {
-        greatest * (least / greatest).powf(u)
+        greatest * pow(least / greatest, u)
     }
 
     /// A point of the film near `film`, in any direction from it.
     pub(super) fn moved(&self, film: [f64; 2], source: &mut dyn UniformSource) -> [f64; 2] {
         let radius = Self::size(self.film, source.next_uniform());
-        let (sine, cosine) = (TAU * source.next_uniform()).sin_cos();
+        let (sine, cosine) = sin_cos(TAU * source.next_uniform());
         [film[0] + radius * cosine, film[1] + radius * sine]
     }
 
     /// A direction near `direction`, in any plane through it.
     pub(super) fn turned(&self, direction: DVec3, source: &mut dyn UniformSource) -> DVec3 {
-        let (off, along) = Self::size(self.turn, source.next_uniform()).sin_cos();
+        let (off, along) = sin_cos(Self::size(self.turn, source.next_uniform()));
         let (x, y) = direction.any_orthonormal_pair();
-        let (sine, cosine) = (TAU * source.next_uniform()).sin_cos();
+        let (sine, cosine) = sin_cos(TAU * source.next_uniform());
         (along * direction + off * (cosine * x + sine * y)).normalize()
     }
 }
@@ -87,7 +88,7 @@ impl<'p> Proposal<'p> {
         let (position, site, colour) = match self.x.vertices[next].site {
             PathSite::Medium { .. } => {
                 let scale =
-                    self.stretch.map_or(1.0, |most| (most * (2.0 * self.source.next_uniform() - 1.0)).exp());
+                    self.stretch.map_or(1.0, |most| exp(most * (2.0 * self.source.next_uniform() - 1.0)));
                 segment.length = self.x.edges[edge].length * scale;
                 if self.world.is_occluded(&segment) {
                     return None;
@@ -187,6 +188,6 @@ impl<'p> Proposal<'p> {
         let colours = [&*self.y, self.x].map(|path| path.colour().max_element());
         let proposed = of(self.y);
         let exists = colours[0] > 0.0 && proposed > f64::NEG_INFINITY;
-        exists.then(|| proposed - of(self.x) + (colours[0] / colours[1]).ln())
+        exists.then(|| proposed - of(self.x) + ln(colours[0] / colours[1]))
     }
 }

@@ -4,6 +4,7 @@ use super::coordinates::{Made, ln_product};
 use super::vertex::Continuation;
 use super::{Met, PathEdge, PathSite, PathVertex, PathWorld, Towards};
 use fairflight_bidirectional::{Found, Site, Subpath};
+use fairflight_elementary::ln;
 use fairflight_media::Line;
 use fairflight_paths::transport::Light;
 use fairflight_scene::{Material, Segment, Spectrum};
@@ -77,7 +78,7 @@ impl PathState {
     /// ln f, by the greatest channel, computed anew from vertices and edges.
     #[must_use]
     pub fn ln_contribution(&self, world: &dyn PathWorld) -> f64 {
-        ln_product(world, self, 0..self.len(), |_| Made::Connected, false) + self.colour().max_element().ln()
+        ln_product(world, self, 0..self.len(), |_| Made::Connected, false) + ln(self.colour().max_element())
     }
 
     /// Writes the path that a strategy of the bidirectional integrator found; false where rounding puts x_1 beside the image. Its weight f/p is the

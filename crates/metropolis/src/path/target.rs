@@ -4,6 +4,7 @@ use super::{PathState, PathWorld};
 use crate::integrand::{film_position, pixels};
 use crate::{Film, Importance, Mutation, Proposed, Target, Which, acceptance};
 use fairflight_bidirectional::{Bidirectional, Found, Subpath, WeightThickness};
+use fairflight_elementary::ln;
 use fairflight_paths::transport::Types;
 use fairflight_scene::Spectrum;
 use fairflight_sources::UniformSource;
@@ -196,7 +197,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Target<W::Spectrum> for PathTarget
         let kind = cumulative.partition_point(|&sum| sum <= chance).min(cumulative.len() - 1);
         let mut ln_ratio = mutations[kind].1.propose(present, proposed, source);
         if let (Some(ln_ratio), Some(importance)) = (&mut ln_ratio, importance) {
-            *ln_ratio += (importance.of(proposed.pixel()) / importance.of(present.pixel())).ln();
+            *ln_ratio += ln(importance.of(proposed.pixel()) / importance.of(present.pixel()));
         }
         let acceptance = if ln_ratio.is_some_and(f64::is_nan) { f64::NAN } else { acceptance(ln_ratio) };
         Proposed { kind, acceptance }
@@ -205,7 +206,7 @@ impl<W: Types, K: WeightThickness<W::Medium>> Target<W::Spectrum> for PathTarget
     fn accept(&mut self) {
         std::mem::swap(&mut self.present, &mut self.proposed);
         let importance = self.importance.map_or(1.0, |importance| importance.of(self.present.pixel()));
-        self.ln_present = self.present.ln_contribution(self.world) + importance.ln();
+        self.ln_present = self.present.ln_contribution(self.world) + ln(importance);
     }
 
     fn deposit(&self, which: Which, energy: f64, film: &mut Film<'_, W::Spectrum>) {

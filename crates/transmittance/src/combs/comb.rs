@@ -1,5 +1,6 @@
 //! The comb: a quadrature of the optical thickness with one random shift (kettunen-2021).
 
+use fairflight_elementary::{asin, sin};
 use fairflight_media::{Breakpoints, Extinction};
 
 /// How the teeth of a [`Comb`] are placed and corrected. Every shape is unbiased on every profile; they differ in
@@ -232,7 +233,7 @@ impl Comb {
             let x = (s - from) / length;
             let t = match self.shape {
                 // The root in [0, 1] of 3 t² − 2 t³ = x.
-                CombShape::Periodised => 0.5 - ((1.0 - 2.0 * x).asin() / 3.0).sin(),
+                CombShape::Periodised => 0.5 - sin(asin(1.0 - 2.0 * x) / 3.0),
                 _ => x,
             };
             (t * f64::from(self.teeth)).fract()

@@ -4,6 +4,7 @@ use super::deviation::DeviationLaw;
 use super::{Comb, CombCumulants};
 use crate::allowance::Allowance;
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory, TransmittanceEstimator};
+use fairflight_elementary::{cos, exp, exp_m1, ln, sin};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 
@@ -39,7 +40,7 @@ impl Jackknife {
     /// E\[estimate\]/T − 1 = exp(k3/12 − k4/48) − 1 up to the fourth cumulant of a comb X.
     #[must_use]
     pub fn predicted_bias(cumulants: &CombCumulants) -> f64 {
-        (cumulants.k3 / 12.0 - cumulants.k4 / 48.0).exp_m1()
+        exp_m1(cumulants.k3 / 12.0 - cumulants.k4 / 48.0)
     }
 }
 
@@ -48,7 +49,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for Jackknife {
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let [x1, x2] = [(); 2].map(|()| self.comb.thickness(field, &prepared, source.next_uniform()));
-        (0.5 * (x1 - x2)).cos() * (-0.5 * (x1 + x2)).exp()
+        cos(0.5 * (x1 - x2)) * exp(-0.5 * (x1 + x2))
     }
 
     fn admits(&self, _field: &F, _s: f64, _sigma_t: f64) -> bool {
@@ -89,7 +90,7 @@ impl Jackknife {
         let [half_re, half_im, full_re, full_im, plain] = law.expect(|d, _| {
             let [half_re, half_im] = exp_m1_of_diagonal(0.5 * d);
             let [full_re, full_im] = exp_m1_of_diagonal(d);
-            [half_re - 0.5 * d, half_im - 0.5 * d, full_re - d, full_im - d, d.exp_m1() - d]
+            [half_re - 0.5 * d, half_im - 0.5 * d, full_re - d, full_im - d, exp_m1(d) - d]
         })?;
         // |1 + z|² − 1
         let excess = |re: f64, im: f64| 2.0 * re + re * re + im * im;
@@ -102,7 +103,7 @@ impl Jackknife {
         Some(Theory {
             relative_mean: 1.0 + mean,
             relative_central,
-            log_relative_variance: variance.ln(),
+            log_relative_variance: ln(variance),
             relative_variance_error: law.relative_error(),
             ..Theory::mean_only(lookups)
         })
@@ -121,24 +122,24 @@ fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f
     let (mut greatest, mut plain) = (law.greatest(), f64::NAN);
     for _ in 0..MOST_ROUNDS {
         greatest = law.greatest();
-        [plain] = law.expect_within(0.0, |d, _| [(d - greatest).exp()])?;
+        [plain] = law.expect_within(0.0, |d, _| [exp(d - greatest)])?;
         if plain.is_finite() {
             break;
         }
     }
     // Relative to the greatest of them: waves average out.
     let [half_re, half_im, full_re, full_im] = law.expect_within(plain, |d, _| {
-        let (half, full) = ((0.5 * (d - greatest)).exp(), (d - greatest).exp());
-        [half * (0.5 * d).cos(), half * (0.5 * d).sin(), full * d.cos(), full * d.sin()]
+        let (half, full) = (exp(0.5 * (d - greatest)), exp(d - greatest));
+        [half * cos(0.5 * d), half * sin(0.5 * d), full * cos(d), full * sin(d)]
     })?;
     let square = |re: f64, im: f64| re * re + im * im;
     let mean = square(half_re, half_im);
     let variance = 0.5 * (square(full_re, full_im) + plain * plain) - mean * mean;
-    let log_relative_variance = 2.0 * greatest + variance.ln();
+    let log_relative_variance = 2.0 * greatest + ln(variance);
     let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
-    relative_central[0] = log_relative_variance.exp();
+    relative_central[0] = exp(log_relative_variance);
     Some(Theory {
-        relative_mean: (greatest + mean.ln()).exp(),
+        relative_mean: exp(greatest + ln(mean)),
         relative_central,
         log_relative_variance,
         relative_variance_error: law.relative_error(),
@@ -148,9 +149,9 @@ fn of_great_deviations<F: Breakpoints>(law: &mut DeviationLaw<'_, F>, lookups: f
 
 /// Real and imaginary part of exp((1 + i) x) − 1, without cancellation near 0.
 fn exp_m1_of_diagonal(x: f64) -> [f64; 2] {
-    let half = (0.5 * x).sin();
+    let half = sin(0.5 * x);
     // e^x cos x − 1 = (e^x − 1) cos x − (1 − cos x)
-    [x.exp_m1() * x.cos() - 2.0 * half * half, x.exp() * x.sin()]
+    [exp_m1(x) * cos(x) - 2.0 * half * half, exp(x) * sin(x)]
 }
 
 #[cfg(test)]

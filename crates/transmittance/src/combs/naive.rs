@@ -1,13 +1,14 @@
 //! exp(−X) of one comb: [`RayMarching`](crate::RayMarching) with a jittered offset. **Biased**; here is by how much.
 
 use super::CombCumulants;
+use fairflight_elementary::exp_m1;
 
 /// E\[exp(−X)\]/T − 1 = exp(k2/2 − k3/6 + k4/24 − …) − 1 for a comb X with these cumulants (raab-2008 section 1 has
 /// the sign, by Jensen's inequality). The estimator itself is [`RayMarching`](crate::RayMarching) with
 /// [`Offset::Jittered`](crate::Offset::Jittered), whose theory has the expectation exactly.
 #[must_use]
 pub fn predicted_naive_bias(cumulants: &CombCumulants) -> f64 {
-    (cumulants.k2 / 2.0 - cumulants.k3 / 6.0 + cumulants.k4 / 24.0).exp_m1()
+    exp_m1(cumulants.k2 / 2.0 - cumulants.k3 / 6.0 + cumulants.k4 / 24.0)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::Roulette;
 use super::symmetric_means::SymmetricMeans;
+use fairflight_elementary::{exp, exp2, ln, log2};
 
 /// 1/(N + 1) Σ_j exp(D_j) Σ_{k ≤ N} w_k m_k({D_i − D_j}_{i ≠ j}) of the deviations D_i = X_0 − X_i of N + 1 draws: s and t of s exp(t), t = 0
 /// where that is no way beyond the range of numbers.
@@ -19,9 +20,9 @@ pub(super) fn of_draws(roulette: Roulette, deviations: &[f64]) -> (f64, f64) {
         means.clear();
         let (before, others) = deviations.split_at(pivot);
         means.extend(before.iter().chain(&others[1..]).map(|&other| (other - own) / unit));
-        sum += (own - top).exp() * polynomial(roulette, &means.means()[1..], unit);
+        sum += exp(own - top) * polynomial(roulette, &means.means()[1..], unit);
     }
-    let exponent = if unit == 1.0 { top } else { top + f64::from(order) * (0.5 * unit).ln() };
+    let exponent = if unit == 1.0 { top } else { top + f64::from(order) * ln(0.5 * unit) };
     (sum / f64::from(order + 1), exponent)
 }
 
@@ -33,7 +34,7 @@ const MOST_EXPONENT: f64 = 300.0;
 fn differences_in(spread: f64, order: u32) -> f64 {
     // 10000^33 < 2^450.
     let few = spread < 1e4 && order <= 33;
-    if few || spread.log2() * f64::from(order) < 450.0 { 1.0 } else { spread.log2().ceil().exp2() }
+    if few || log2(spread) * f64::from(order) < 450.0 { 1.0 } else { exp2(log2(spread).ceil()) }
 }
 
 /// Σ_k w_k U^k m_k over (U/2)^N, of m_1 … m_N in units of U; 1 stands for no unit and no divisor.

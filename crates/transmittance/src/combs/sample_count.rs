@@ -1,6 +1,7 @@
 //! How many teeth a comb should have (kettunen-2021).
 
 use super::Roulette;
+use fairflight_elementary::cbrt;
 
 /// The expected order of a Bhanot–Kennedy roulette (bhanot-1985): stopped at once with probability
 /// `stop_probability`, else `sure` orders, then on to order k with probability c/k:
@@ -35,7 +36,7 @@ pub fn expected_order(stop_probability: f64, sure: u32, c: f64) -> f64 {
 pub fn teeth_for(optical_thickness: f64) -> u32 {
     let t = optical_thickness;
     debug_assert!(t >= 0.0, "a control's optical thickness is not negative: {t}");
-    let series = ((0.015 + t) * (0.65 + t) * (60.3 + t)).cbrt().ceil();
+    let series = cbrt((0.015 + t) * (0.65 + t) * (60.3 + t)).ceil();
     let combs = 1.0 + Roulette::KETTUNEN.expected_order();
     // Saturates.
     ((series / combs + 0.5).floor() as u32).max(1)

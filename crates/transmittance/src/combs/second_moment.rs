@@ -22,6 +22,7 @@
 
 use super::Roulette;
 use super::deviation::DeviationLaw;
+use fairflight_elementary::{exp, exp_m1};
 use fairflight_media::Breakpoints;
 
 /// Orders tried before the sum is given up, and in how large steps: the tables grow with their cube.
@@ -87,13 +88,13 @@ impl Tables {
         let unit = law.unit();
         let v = law.k2() / (unit * unit);
         let [square, first, slope] = law.expect(|d, x| {
-            let e = d.exp_m1();
+            let e = exp_m1(d);
             [e * e, e - d, x * e]
         })?;
-        let single = law.moments(highest + 2, f64::exp)?;
-        let mixed = law.moments(highest, |d| d.exp() * d.exp_m1())?;
+        let single = law.moments(highest + 2, exp)?;
+        let mixed = law.moments(highest, |d| exp(d) * exp_m1(d))?;
 
-        let mut double = vec![law.moments(2 * highest, |d| (2.0 * d).exp())?];
+        let mut double = vec![law.moments(2 * highest, |d| exp(2.0 * d))?];
         for m in 0..highest {
             let last = &double[m];
             double.push((0..last.len().saturating_sub(2)).map(|p| v * last[p] + last[p + 2]).collect());

@@ -1,6 +1,7 @@
 //! The variance of unbiased ray marching to second order: for advice, where its exact integral is not at hand.
 
 use super::Roulette;
+use fairflight_elementary::{exp_m1, ln_1p};
 
 /// Var/T² to second order in the deviations, for combs whose draws have the variance `k2` over the whole ray, split
 /// evenly over `segments`:
@@ -21,7 +22,7 @@ pub fn predicted_relative_variance(k2: f64, roulette: Roulette, segments: u32) -
     let p = roulette.going_on();
     let k2 = k2 / f64::from(segments);
     let of_one = k2 * (1.0 - 2.0 / 3.0 * p) + k2 * k2 / (2.0 * p);
-    (f64::from(segments) * of_one.ln_1p()).exp_m1()
+    exp_m1(f64::from(segments) * ln_1p(of_one))
 }
 
 #[cfg(test)]

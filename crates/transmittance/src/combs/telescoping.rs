@@ -2,6 +2,7 @@
 
 use super::{Comb, CombShape, NoTeeth, Prepared};
 use crate::TransmittanceEstimator;
+use fairflight_elementary::{exp, exp_m1, exp2, ln, sinh};
 use fairflight_media::Extinction;
 use fairflight_sources::UniformSource;
 
@@ -76,7 +77,7 @@ impl Telescoping {
     #[must_use]
     pub fn matched_ratio(decay: f64) -> f64 {
         debug_assert!(decay > 1.0, "finite variance at finite cost needs a decay above 1: {decay}");
-        1.0 - (-0.5 * (decay + 1.0)).exp2()
+        1.0 - exp2(-0.5 * (decay + 1.0))
     }
 
     /// The comb of level 0.
@@ -138,14 +139,14 @@ impl Telescoping {
 #[inline]
 fn difference(exponent: f64, half: f64) -> f64 {
     if exponent.abs() < 700.0 && half.abs() < 350.0 {
-        let sinh = half.sinh();
-        return -2.0 * exponent.exp() * sinh * sinh;
+        let sine = sinh(half);
+        return -2.0 * exp(exponent) * sine * sine;
     }
     if half == 0.0 {
         return 0.0;
     }
     let both = 2.0 * half.abs();
-    -(exponent + both + 2.0 * (-(-both).exp_m1()).ln() - std::f64::consts::LN_2).exp()
+    -exp(exponent + both + 2.0 * ln(-exp_m1(-both)) - std::f64::consts::LN_2)
 }
 
 impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
@@ -157,7 +158,7 @@ impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
         }
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let at = (level, source.next_uniform());
-        let (base, difference) = self.nested(field, &prepared, at, 0.0, |x| (-x).exp());
+        let (base, difference) = self.nested(field, &prepared, at, 0.0, |x| exp(-x));
         base + difference / self.probability(level)
     }
 

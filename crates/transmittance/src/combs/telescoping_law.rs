@@ -3,6 +3,7 @@
 use super::{Comb, Prepared, Telescoping};
 use crate::allowance::{Allowance, NODES};
 use crate::{ClosedForm, HIGHEST_MOMENT, Theory};
+use fairflight_elementary::{exp, exp_m1, ln, pow};
 use fairflight_media::{Breakpoints, RayQuadrature, Tolerance};
 use std::cell::Cell;
 
@@ -159,7 +160,7 @@ impl Telescoping {
         let [before, .., last] = shares.get(shares.len().checked_sub(5)?..)? else { return None };
         let mut unknown = [f64::NAN; HIGHEST_MOMENT - 1];
         // Over four levels: where a jump stands in the binary fractions of a step repeats after two or four, if at all.
-        let ratio = (last / before).powf(0.25);
+        let ratio = pow(last / before, 0.25);
         if ratio >= 1.0 {
             unknown[0] = f64::INFINITY;
             return Some(with((unknown, unit), f64::NAN));
@@ -192,9 +193,9 @@ impl Scale {
     /// (exp(τ − x) − 1) exp(−log).
     fn deviation(self, x: f64) -> f64 {
         if self.log == 0.0 {
-            (self.thickness - x).exp_m1()
+            exp_m1(self.thickness - x)
         } else {
-            (self.thickness - self.log - x).exp() - (-self.log).exp()
+            exp(self.thickness - self.log - x) - exp(-self.log)
         }
     }
 
@@ -210,13 +211,13 @@ impl Scale {
             if self.log == 0.0 || moments[i] == 0.0 {
                 return if moments[i] == 0.0 { 0.0 } else { moments[i] * unit.powi(n) };
             }
-            let log = moments[i].abs().ln() + f64::from(n) * (unit.ln() + self.log);
-            moments[i].signum() * log.exp()
+            let log = ln(moments[i].abs()) + f64::from(n) * (ln(unit) + self.log);
+            moments[i].signum() * exp(log)
         });
         let log_relative_variance = if self.log == 0.0 {
-            relative_central[0].ln()
+            ln(relative_central[0])
         } else {
-            moments[0].ln() + 2.0 * (unit.ln() + self.log)
+            ln(moments[0]) + 2.0 * (ln(unit) + self.log)
         };
         Theory {
             relative_mean: 1.0,

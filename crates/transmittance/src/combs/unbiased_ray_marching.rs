@@ -7,6 +7,7 @@ use super::symmetric_means::IN_PLACE;
 use super::{Comb, Prepared, Roulette, RunningCumulant};
 use crate::allowance::{Allowance, NODES};
 use crate::{ClosedForm, HIGHEST_MOMENT, SignedProduct, Theory, TransmittanceEstimator};
+use fairflight_elementary::{exp, exp_m1, ln, ln_1p};
 use fairflight_media::{Breakpoints, Extinction, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use smallvec::SmallVec;
@@ -211,11 +212,11 @@ impl UnbiasedRayMarching {
             let mut law = DeviationLaw::new((&self.comb, field, &prepared), tolerance, allowance)?;
             let (variance, relative) = relative_variance(&mut law, self.roulette)?;
             // Independent factors: second moments multiply.
-            log_square += variance.ln_1p();
+            log_square += ln_1p(variance);
             error += relative * variance / (1.0 + variance);
             before = Some(prepared);
         }
-        let variance = log_square.exp_m1();
+        let variance = exp_m1(log_square);
         let mut relative_central = [f64::NAN; HIGHEST_MOMENT - 1];
         if variance == 0.0 {
             relative_central = [0.0; HIGHEST_MOMENT - 1];
@@ -224,12 +225,12 @@ impl UnbiasedRayMarching {
         Some(Theory {
             relative_central,
             log_relative_variance: if log_square > 1.0 {
-                log_square + (-(-log_square).exp()).ln_1p()
+                log_square + ln_1p(-exp(-log_square))
             } else {
-                variance.ln()
+                ln(variance)
             },
             // dVar/Var = dL exp(L)/(exp(L) − 1), L = Σ ln(1 + v) over the segments.
-            relative_variance_error: if variance > 0.0 { error / -(-log_square).exp_m1() } else { 0.0 },
+            relative_variance_error: if variance > 0.0 { error / -exp_m1(-log_square) } else { 0.0 },
             ..Theory::mean_only(self.expected_lookups())
         })
     }

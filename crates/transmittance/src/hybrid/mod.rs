@@ -10,6 +10,7 @@ use crate::{
     ClosedForm, Comb, CombShape, JitteredRatio, Roulette, Theory, TransmittanceEstimator,
     UnbiasedRayMarching, predicted_relative_variance, teeth_for,
 };
+use fairflight_elementary::{exp, exp_m1, ln};
 use fairflight_media::{Breakpoints, Majorant, RayQuadrature, Tolerance};
 use fairflight_sources::UniformSource;
 use pilot::{EPSILONS, FINENESSES};
@@ -169,7 +170,7 @@ impl Hybrid {
             return None;
         }
         let geometric_mean = |variance: &dyn Fn(&Pilot) -> f64| {
-            (pilots.iter().map(|pilot| variance(pilot).max(ROUNDING).ln()).sum::<f64>() / count).exp()
+            exp(pilots.iter().map(|pilot| ln(variance(pilot).max(ROUNDING))).sum::<f64>() / count)
         };
         if let Candidate::Jittered { index } = candidate {
             let relative_variance = geometric_mean(&on_this_ray);
@@ -215,7 +216,7 @@ fn strata(index: usize) -> JitteredRatio {
 fn jittered_cost(depth: f64, index: usize) -> Forecast {
     let strata = (depth / EPSILONS[index]).ceil().max(1.0);
     let thickness = depth / strata;
-    let lookups = if thickness > 0.0 { strata * thickness.exp_m1() / thickness } else { 0.0 };
+    let lookups = if thickness > 0.0 { strata * exp_m1(thickness) / thickness } else { 0.0 };
     Forecast { relative_variance: f64::INFINITY, lookups }
 }
 

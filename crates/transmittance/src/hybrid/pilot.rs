@@ -1,6 +1,7 @@
 //! A look at one ray, for the benefit of later ones.
 
 use crate::teeth_for;
+use fairflight_elementary::{exp_m1, ln_1p};
 use fairflight_media::Majorant;
 use fairflight_sources::UniformSource;
 
@@ -109,7 +110,7 @@ fn jittered<F: Majorant>(field: &F, epsilon: f64, pairs: u32, source: &mut impl 
             0.5 * (first - second) * (first - second) + square * square / (2.0 * thickness)
         })
         .sum();
-    (strata * (sum / f64::from(pairs)).ln_1p()).exp_m1()
+    exp_m1(strata * ln_1p(sum / f64::from(pairs)))
 }
 
 /// The sample variance of a few values.
