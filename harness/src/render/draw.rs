@@ -382,7 +382,9 @@ mod tests {
                 pool.install(|| {
                     let scene: Box<dyn Scene<f64>> =
                         if one_by_one { Box::new(OneByOne(draw.compiled())) } else { draw.compiled() };
-                    [3, 1].map(|samples| draw.add(&*scene, &mut canvas, samples).unwrap());
+                    for samples in [3, 1] {
+                        draw.add(&*scene, &mut canvas, samples).unwrap();
+                    }
                 });
                 let drawn = canvas.drawn(false);
                 (drawn.pixels, canvas.pass_means, drawn.cost.lookups, drawn.cost.truncated)
