@@ -194,12 +194,8 @@ struct Trace<'t, 's, M, P, C, R, T> {
     take: T,
 }
 
-impl<M, P, C, R, T: FnMut(usize, C)> pulp::WithSimd for Trace<'_, '_, M, P, C, R, T>
-where
-    M: Medium,
-    P: PhaseFunction,
-    C: Spectrum,
-    R: SamplingExtinction,
+impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction, T: FnMut(usize, C)> pulp::WithSimd
+    for Trace<'_, '_, M, P, C, R, T>
 {
     type Output = ();
 
