@@ -1,6 +1,7 @@
 //! The single particle model: at most one of the two particles is kept (szirmay-kalos-2017 eq. 9 and 12).
 
 use crate::{Albedo, Branch, CollisionModel, Outcome, SingleOutcome};
+use fairflight_elementary::lanes::{LANES, Lanes};
 use fairflight_sources::UniformSource;
 
 /// Choice of the probabilities q_scat and q_tran from a·|r| and |1 − r|.
@@ -107,35 +108,56 @@ impl CollisionModel for SingleParticle {
     }
 }
 
-/// SimulateParticle's decision (szirmay-kalos-2017 section 4.1).
+impl SingleParticle {
+    /// SimulateParticle's decision by a variate u (szirmay-kalos-2017 section 4.1): the energy of the particle that survives, ±0 if none does, and whether it is the
+    /// scattered one.
+    ///
+    /// Without a branch, so that it becomes vector instructions in lanes.
+    #[inline(always)]
+    fn decide(&self, version: Version, r: f64, u: f64) -> (f64, bool) {
+        let (scatter, transmit) = (self.albedo.get() * r.abs(), (1.0 - r).abs());
+        let sum = scatter + transmit;
+        let keeps_one = match version {
+            Version::Terminating => false,
+            Version::NonTerminating => true,
+            Version::Adaptive => (r < 1.0) | (sum > 1.0),
+        };
+        // u q_sum < q_scat instead of u < q_scat / q_sum: a product in place of two quotients. Its rounding must not choose
+        // a particle of probability 0. (At a = 0, r = 1 eq. 12 is 0/0: neither particle has energy, and the walk ends.)
+        let is_scattered = if keeps_one { (u * sum < scatter) | (transmit == 0.0) } else { u < scatter };
+        let size = if keeps_one { sum } else { f64::from(u8::from(is_scattered | (u < sum))) };
+        (size.copysign(if is_scattered { r } else { 1.0 - r }), is_scattered)
+    }
+
+    /// The decisions of [`collide`](SingleOutcome::collide) in all lanes: energies, ±0 of what is absorbed, and whether the particle is the scattered one.
+    #[inline(always)]
+    #[must_use]
+    pub fn collide_lanes(&self, r: &Lanes, u: &Lanes) -> (Lanes, [bool; LANES]) {
+        // A loop for each version.
+        match self.version {
+            version @ Version::Terminating => self.decide_lanes(version, r, u),
+            version @ Version::NonTerminating => self.decide_lanes(version, r, u),
+            version @ Version::Adaptive => self.decide_lanes(version, r, u),
+        }
+    }
+
+    #[inline(always)]
+    fn decide_lanes(&self, version: Version, r: &Lanes, u: &Lanes) -> (Lanes, [bool; LANES]) {
+        let (mut energies, mut are_scattered) = ([0.0; LANES], [false; LANES]);
+        for i in 0..LANES {
+            (energies[i], are_scattered[i]) = self.decide(version, r[i], u[i]);
+        }
+        (energies, are_scattered)
+    }
+}
+
 impl SingleOutcome for SingleParticle {
     #[inline]
     fn collide(&self, r: f64, source: &mut impl UniformSource) -> Outcome {
-        let u = source.next_uniform();
-        let scatter = self.albedo.get() * r.abs();
-        let transmit = (1.0 - r).abs();
-        let sum = scatter + transmit;
-        let keeps_both = match self.version {
-            Version::Terminating => false,
-            Version::NonTerminating => true,
-            Version::Adaptive => r < 1.0 || sum > 1.0,
-        };
-        if !keeps_both {
-            return if u < scatter {
-                Outcome::Scattered(1.0_f64.copysign(r))
-            } else if u < sum {
-                Outcome::Transmitted(1.0_f64.copysign(1.0 - r))
-            } else {
-                Outcome::Absorbed
-            };
-        }
-        // u q_sum < q_scat instead of u < q_scat / q_sum: a product in place of two quotients. Its rounding must not choose
-        // a particle of probability 0.
-        if u * sum < scatter || transmit == 0.0 {
-            // At a = 0, r = 1 eq. 12 is 0/0: neither particle has energy, and the walk ends.
-            if sum == 0.0 { Outcome::Absorbed } else { Outcome::Scattered(sum.copysign(r)) }
-        } else {
-            Outcome::Transmitted(sum.copysign(1.0 - r))
+        match self.decide(self.version, r, source.next_uniform()) {
+            (0.0, _) => Outcome::Absorbed,
+            (energy, true) => Outcome::Scattered(energy),
+            (energy, false) => Outcome::Transmitted(energy),
         }
     }
 }

@@ -75,6 +75,29 @@ fn one_variate_draws_both_branches() {
 }
 
 #[test]
+fn decisions_of_lanes_are_those_of_one() {
+    let u: [f64; 16] = std::array::from_fn(|lane| [0.0, 0.2, 0.7, LARGEST_VARIATE][lane / 4]);
+    for a in ALBEDOS {
+        for version in [Version::Terminating, Version::NonTerminating, Version::Adaptive] {
+            let model = single(version, a);
+            for ratios in RATIOS.chunks(4) {
+                let r = std::array::from_fn(|lane| ratios[lane % ratios.len()]);
+                let (energies, are_scattered) = model.collide_lanes(&r, &u);
+                for lane in 0..16 {
+                    let expected = model.collide(r[lane], &mut Scripted::new([u[lane]]));
+                    let found = match (energies[lane], are_scattered[lane]) {
+                        (0.0, _) => Outcome::Absorbed,
+                        (energy, true) => Outcome::Scattered(energy),
+                        (energy, false) => Outcome::Transmitted(energy),
+                    };
+                    assert_eq!(found, expected, "{version:?}, a = {a}, r = {}, u = {}", r[lane], u[lane]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn no_variate_draws_what_has_no_probability() {
     for version in [Version::NonTerminating, Version::Adaptive] {
         for u in [0.0, LARGEST_VARIATE] {

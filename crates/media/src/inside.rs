@@ -1,6 +1,8 @@
 //! Rays that start inside the bounds: those of a walk after its first collision.
 
+use crate::lanes::vector;
 use crate::{Bounds, Clip, Line};
+use fairflight_elementary::lanes::{LANES, Lanes};
 use glam::DVec3;
 
 impl Bounds {
@@ -10,27 +12,29 @@ impl Bounds {
     #[must_use]
     pub fn exit_distance(&self, point: DVec3, direction: DVec3) -> f64 {
         match *self {
+            Self::Sphere { center, radius } => exit_of_sphere((center, radius), point, direction),
+            Self::Box { min, max } => exit_of_box((min, max), point, direction),
+        }
+    }
+
+    /// The same in all lanes, of the coordinates of points and directions.
+    #[inline(always)]
+    #[must_use]
+    pub fn exit_distance_lanes(&self, points: &[Lanes; 3], directions: &[Lanes; 3]) -> Lanes {
+        let mut exits = [0.0; LANES];
+        match *self {
             Self::Sphere { center, radius } => {
-                let offset = point - center;
-                let along = offset.dot(direction);
-                let inside = radius * radius - offset.length_squared();
-                let half = (along * along + inside).max(0.0).sqrt();
-                // −along + half, written for along > 0 so that it does not cancel near the surface.
-                let exit = if along > 0.0 { inside / (along + half) } else { half - along };
-                exit.max(0.0)
+                for (i, exit) in exits.iter_mut().enumerate() {
+                    *exit = exit_of_sphere((center, radius), vector(points, i), vector(directions, i));
+                }
             }
             Self::Box { min, max } => {
-                let mut exit = f64::INFINITY;
-                for axis in 0..3 {
-                    let d = direction[axis];
-                    if d != 0.0 {
-                        let face = if d > 0.0 { max[axis] } else { min[axis] };
-                        exit = exit.min((face - point[axis]) / d);
-                    }
+                for (i, exit) in exits.iter_mut().enumerate() {
+                    *exit = exit_of_box((min, max), vector(points, i), vector(directions, i));
                 }
-                exit.max(0.0)
             }
         }
+        exits
     }
 
     /// The rest of a ray that starts inside, as a clip of its own.
@@ -45,12 +49,7 @@ impl Bounds {
     #[inline]
     #[must_use]
     pub fn certainly_misses(&self, origin: DVec3, direction: DVec3) -> bool {
-        let (center, radius) = self.enclosing_ball();
-        let offset = origin - center;
-        let along = offset.dot(direction);
-        let far = offset.length_squared();
-        // Each square is rounded at the size of the largest, by a few ε = 2e-16: a margin a thousand times that.
-        far - along * along - radius * radius > 1e-12 * (far + radius * radius)
+        line_misses(self.enclosing_ball(), origin, direction)
     }
 
     /// True if a point lies in the bounds, their surface included.
@@ -82,6 +81,46 @@ impl Bounds {
     }
 }
 
+/// True if a line certainly misses a ball.
+#[inline(always)]
+pub(crate) fn line_misses((center, radius): (DVec3, f64), origin: DVec3, direction: DVec3) -> bool {
+    let offset = origin - center;
+    let along = offset.dot(direction);
+    let far = offset.length_squared();
+    // Each square is rounded at the size of the largest, by a few ε = 2e-16: a margin a thousand times that.
+    far - along * along - radius * radius > 1e-12 * (far + radius * radius)
+}
+
+#[inline(always)]
+fn exit_of_sphere((center, radius): (DVec3, f64), point: DVec3, direction: DVec3) -> f64 {
+    let offset = point - center;
+    let along = offset.dot(direction);
+    let inside = radius * radius - offset.length_squared();
+    let half = at_least_0(along * along + inside).sqrt();
+    // −along + half, written for along > 0 so that it does not cancel near the surface.
+    let exit = if along > 0.0 { inside / (along + half) } else { half - along };
+    at_least_0(exit)
+}
+
+#[inline(always)]
+fn exit_of_box((min, max): (DVec3, DVec3), point: DVec3, direction: DVec3) -> f64 {
+    let mut exit = f64::INFINITY;
+    for axis in 0..3 {
+        let d = direction[axis];
+        let face = if d > 0.0 { max[axis] } else { min[axis] };
+        let distance = (face - point[axis]) / d;
+        // No face across an axis along which it does not travel.
+        exit = if (d != 0.0) & (distance < exit) { distance } else { exit };
+    }
+    at_least_0(exit)
+}
+
+/// A comparison, which `f64::max` is more than: nothing here is no number.
+#[inline(always)]
+fn at_least_0(x: f64) -> f64 {
+    if x > 0.0 { x } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,6 +138,27 @@ mod tests {
                 assert!(bounds.contains(point));
                 let clip = bounds.clip(point, direction, None).unwrap().unwrap();
                 assert!((bounds.exit_distance(point, direction) - clip.length).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn the_exit_of_lanes_is_that_of_one() {
+        let ball = Bounds::sphere(dvec3(0.0, 0.0, 10.0), 10.0).unwrap();
+        let cube = Bounds::aligned_box(DVec3::ZERO, DVec3::ONE).unwrap();
+        for (bounds, start) in [(ball, dvec3(0.0, 0.0, 10.0)), (cube, DVec3::splat(0.5))] {
+            for k in 0..40 {
+                let t: Lanes = std::array::from_fn(|i| (LANES * k + i) as f64);
+                let points = [0.31, -0.27, 0.07].map(|step| t.map(|t| (step * t).sin()));
+                let points: [Lanes; 3] =
+                    std::array::from_fn(|axis| points[axis].map(|offset| start[axis] + 0.6 * offset));
+                // Some along an axis.
+                let directions = [0.91, 1.7, 2.3].map(|step| t.map(|t| ((step * t).sin() * 4.0).trunc()));
+                let found = bounds.exit_distance_lanes(&points, &directions);
+                for (i, found) in found.iter().enumerate() {
+                    let expected = bounds.exit_distance(vector(&points, i), vector(&directions, i));
+                    assert_eq!(found.to_bits(), expected.to_bits());
+                }
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Fields in space, before a ray is chosen.
 
-use fairflight_elementary::lanes::Lanes;
+use fairflight_elementary::lanes::{LANES, Lanes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -44,6 +44,12 @@ pub trait Medium {
         std::array::from_fn(|lane| self.sigma_t_local(DVec3::new(x[lane], y[lane], z[lane])))
     }
 
+    /// The same for those lanes that look the medium up: one look-up each. What stands in the places of the others is of no use.
+    #[inline(always)]
+    fn sigma_t_local_where(&self, points: &[Lanes; 3], _looks_up: &[bool; LANES]) -> Lanes {
+        self.sigma_t_local_lanes(points)
+    }
+
     /// σ_t at a point in world space \[1/length\].
     fn sigma_t(&self, point: DVec3) -> f64 {
         self.sigma_t_local(self.local(Line { origin: point, direction: DVec3::X }).origin)
@@ -85,6 +91,10 @@ macro_rules! behind_a_pointer {
             #[inline(always)]
             fn sigma_t_local_lanes(&self, points: &[Lanes; 3]) -> Lanes {
                 (**self).sigma_t_local_lanes(points)
+            }
+            #[inline(always)]
+            fn sigma_t_local_where(&self, points: &[Lanes; 3], looks_up: &[bool; LANES]) -> Lanes {
+                (**self).sigma_t_local_where(points, looks_up)
             }
             fn upper_bound(&self) -> Option<f64> {
                 (**self).upper_bound()

@@ -1,6 +1,7 @@
 //! A wrapper around a medium for the one who measures walks in space: counts look-ups, and remembers what they found.
 
 use crate::{Line, LineThickness, Medium, MediumBreakpoints};
+use fairflight_elementary::lanes::{LANES, Lanes};
 use glam::DVec3;
 use std::cell::Cell;
 
@@ -57,6 +58,16 @@ impl<M> Observed<M> {
         }
     }
 
+    #[cold]
+    #[inline(never)]
+    fn widen_by_lanes(&self, values: &Lanes, looks_up: &[bool; LANES]) {
+        values
+            .iter()
+            .zip(looks_up)
+            .filter(|(_, looks_up)| **looks_up)
+            .for_each(|(&value, _)| self.widen(value));
+    }
+
     /// The medium that is observed.
     pub fn medium(&self) -> &M {
         &self.medium
@@ -78,6 +89,26 @@ impl<M: Medium> Medium for Observed<M> {
             self.widen(sigma_t);
         }
         sigma_t
+    }
+    #[inline(always)]
+    fn sigma_t_local_lanes(&self, points: &[Lanes; 3]) -> Lanes {
+        self.sigma_t_local_where(points, &[true; LANES])
+    }
+    #[inline(always)]
+    fn sigma_t_local_where(&self, points: &[Lanes; 3], looks_up: &[bool; LANES]) -> Lanes {
+        let values = self.medium.sigma_t_local_where(points, looks_up);
+        let (lowest, highest) = self.range();
+        let (mut lookups, mut some_outside) = (0, false);
+        for i in 0..LANES {
+            lookups += u64::from(looks_up[i]);
+            let is_inside = (lowest <= values[i]) & (values[i] <= highest);
+            some_outside |= looks_up[i] & !is_inside;
+        }
+        self.lookups.set(self.lookups.get() + lookups);
+        if some_outside {
+            self.widen_by_lanes(&values, looks_up);
+        }
+        values
     }
     fn upper_bound(&self) -> Option<f64> {
         self.medium.upper_bound()
@@ -114,6 +145,21 @@ mod tests {
         let high = values.iter().copied().fold(0.0, f64::max);
         assert_eq!(observed.range(), (low, high));
         assert!(observed.is_finite());
+    }
+
+    #[test]
+    fn lanes_that_do_not_look_up_are_not_observed() {
+        let (one, lanes) = [(); 2].map(|()| Observed::new(AnalyticCosine::new(1.0).unwrap())).into();
+        for k in 0..20 {
+            let points = [0.31, -0.17, 0.07].map(|step| std::array::from_fn(|i| step * (16 * k + i) as f64));
+            let looks_up: [bool; LANES] = std::array::from_fn(|i| (i + k) % 3 > 0);
+            let found = lanes.sigma_t_local_where(&points, &looks_up);
+            for i in (0..LANES).filter(|&i| looks_up[i]) {
+                let point = DVec3::new(points[0][i], points[1][i], points[2][i]);
+                assert_eq!(found[i].to_bits(), one.sigma_t_local(point).to_bits());
+            }
+            assert_eq!((lanes.lookups(), lanes.range()), (one.lookups(), one.range()));
+        }
     }
 
     #[test]

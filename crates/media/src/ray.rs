@@ -1,10 +1,11 @@
 //! A ray through a medium, as a profile.
 
+use crate::lanes::{points, splat};
 use crate::{
     Breakpoints, Clip, Extinction, Line, LineThickness, Majorant, Medium, MediumBreakpoints, Minorant,
     OpticalThickness,
 };
-use fairflight_elementary::lanes::{LANES, Lanes};
+use fairflight_elementary::lanes::Lanes;
 use glam::DVec3;
 
 /// The part of a ray inside the bounds of a medium: s = 0 is where the ray enters.
@@ -61,12 +62,7 @@ impl<M: Medium> Extinction for Ray<M> {
     #[inline(always)]
     fn sigma_t_lanes(&self, s: &Lanes) -> Lanes {
         let Line { origin, direction } = self.local;
-        let mut points = [[0.0; LANES]; 3];
-        for (axis, coordinates) in points.iter_mut().enumerate() {
-            for (coordinate, s) in coordinates.iter_mut().zip(s) {
-                *coordinate = origin[axis] + s * direction[axis];
-            }
-        }
+        let points = points(&splat(origin), &splat(direction), s);
         self.medium.sigma_t_local_lanes(&points)
     }
     #[inline]

@@ -41,6 +41,7 @@ mod grid;
 mod growth;
 mod heuristic;
 mod integrator;
+mod lockstep;
 mod particle_tracer;
 mod path_tracer;
 mod photon_tracer;

@@ -8,7 +8,7 @@ use fairflight_sources::UniformSource;
 /// Multiple scattering by importons: one walk per ray.
 ///
 /// It meets the background where it leaves; every other light is connected with at each scattering event, through an unbiased
-/// estimate of transmittance by the same sampling extinction.
+/// estimate of transmittance by the same sampling extinction. [`trace`](Self::trace) follows importons of many streams in lanes.
 ///
 /// **Law.** E\[radiance\] solves the equation of transfer (raab-2008 eq. 2) in a medium without emission.
 ///
@@ -16,10 +16,10 @@ use fairflight_sources::UniformSource;
 /// light d away weighs 1/d²: its second moment diverges where collisions can lie next to the light (raab-2008 section 4.1).
 #[derive(Debug)]
 pub struct ParticleTracer<'s, M, P, C, R> {
-    volume: &'s Volume<M, P, C>,
-    lights: &'s Lights<C>,
-    walk: Walk<R>,
-    truncated: u64,
+    pub(crate) volume: &'s Volume<M, P, C>,
+    pub(crate) lights: &'s Lights<C>,
+    pub(crate) walk: Walk<R>,
+    pub(crate) truncated: u64,
 }
 
 impl<'s, M, P, C, R> ParticleTracer<'s, M, P, C, R> {
@@ -31,14 +31,6 @@ impl<'s, M, P, C, R> ParticleTracer<'s, M, P, C, R> {
     /// The number of walks that were cut at their greatest number of collisions so far: each is a bias.
     pub fn truncated(&self) -> u64 {
         self.truncated
-    }
-
-    pub(crate) fn volume(&self) -> &'s Volume<M, P, C> {
-        self.volume
-    }
-
-    pub(crate) fn lights(&self) -> &'s Lights<C> {
-        self.lights
     }
 }
 

@@ -1,5 +1,6 @@
 //! Sampling extinction in space: how often a walk looks the medium up, and where.
 
+use fairflight_elementary::lanes::{LANES, Lanes};
 use fairflight_media::Line;
 
 /// The rate σ_samp(p) at which walks meet collisions.
@@ -10,6 +11,18 @@ use fairflight_media::Line;
 pub trait SamplingExtinction {
     /// The next collision on `line`, within `length`, and σ_samp there; `None` if there is none.
     fn fly(&self, line: &Line, from: f64, length: f64, depth: f64) -> Option<(f64, f64)>;
+
+    /// The next collisions of all lanes, ∞ for none, and σ_samp there: each with the bits of [`fly`](Self::fly). `line` tells that of a lane.
+    #[inline(always)]
+    fn fly_lanes(&self, line: impl Fn(usize) -> Line, [from, length, depth]: [&Lanes; 3]) -> [Lanes; 2] {
+        let mut flights = [[f64::INFINITY; LANES], [1.0; LANES]];
+        for i in 0..LANES {
+            if let Some((s, sigma_samp)) = self.fly(&line(i), from[i], length[i], depth[i]) {
+                (flights[0][i], flights[1][i]) = (s, sigma_samp);
+            }
+        }
+        flights
+    }
 
     /// The greatest value \[1/length\].
     fn highest(&self) -> f64;
@@ -58,6 +71,15 @@ impl SamplingExtinction for Uniform {
         let s = from + depth * self.mean_free_path;
         (s < length).then_some((s, self.sigma_samp))
     }
+    #[inline(always)]
+    fn fly_lanes(&self, _line: impl Fn(usize) -> Line, [from, length, depth]: [&Lanes; 3]) -> [Lanes; 2] {
+        let mut to = [0.0; LANES];
+        for i in 0..LANES {
+            let s = from[i] + depth[i] * self.mean_free_path;
+            to[i] = if s < length[i] { s } else { f64::INFINITY };
+        }
+        [to, [self.sigma_samp; LANES]]
+    }
     fn highest(&self) -> f64 {
         self.sigma_samp
     }
@@ -70,6 +92,10 @@ impl<R: SamplingExtinction> SamplingExtinction for &R {
     #[inline]
     fn fly(&self, line: &Line, from: f64, length: f64, depth: f64) -> Option<(f64, f64)> {
         (**self).fly(line, from, length, depth)
+    }
+    #[inline(always)]
+    fn fly_lanes(&self, line: impl Fn(usize) -> Line, distances: [&Lanes; 3]) -> [Lanes; 2] {
+        (**self).fly_lanes(line, distances)
     }
     fn highest(&self) -> f64 {
         (**self).highest()

@@ -1,6 +1,7 @@
 //! Transmittance of whatever ray comes: shadow rays.
 
 use crate::SamplingExtinction;
+use fairflight_elementary::exp;
 use fairflight_media::{Extinction, LineThickness, Medium, OpticalThickness, Ray};
 use fairflight_scene::{Connection, Spectrum, Volume};
 use fairflight_sources::UniformSource;
@@ -36,7 +37,7 @@ impl<M: Medium, R: SamplingExtinction> RayTransmittance<M> for Ratio<R> {
 impl<M: LineThickness> RayTransmittance<M> for Regular {
     #[inline]
     fn estimate(&mut self, ray: &Ray<&M>, _source: &mut impl UniformSource) -> f64 {
-        (-ray.optical_thickness(0.0, ray.length())).exp()
+        exp(-ray.optical_thickness(0.0, ray.length()))
     }
 }
 

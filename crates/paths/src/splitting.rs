@@ -46,7 +46,7 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> LineSplitt
         let event = ScatteringEvent { point, incident, energy: C::splat(1.0) };
         self.tracer.connect(&event, &mut radiance, source);
         let (u, v) = (source.next_uniform(), source.next_uniform());
-        let volume = self.tracer.volume();
+        let volume = self.tracer.volume;
         let direction = volume.phase.sample(incident, u, v).direction;
         let ray = volume.inside(Line { origin: point, direction });
         self.tracer.follow(ray, &mut radiance, source);
@@ -58,8 +58,8 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> Integrator
     for LineSplitting<'_, M, P, C, R>
 {
     fn radiance(&mut self, line: &Line, source: &mut impl UniformSource) -> C {
-        let volume = self.tracer.volume();
-        let background = self.tracer.lights().background.radiance(line.direction);
+        let volume = self.tracer.volume;
+        let background = self.tracer.lights.background.radiance(line.direction);
         let Some(ray) = volume.enter(line, None) else { return background };
         let bounded = Bounded::new(&ray, self.majorant).expect("a majorant is checked to be a number");
         let (integral, starts, albedo) = (self.line, self.starts, volume.albedo);

@@ -1,7 +1,10 @@
 //! A pinhole camera.
 
 use crate::SceneError;
+use fairflight_elementary::lanes::{LANES, Lanes};
+use fairflight_elementary::tan;
 use fairflight_media::Line;
+use fairflight_media::lanes::set_vector;
 use glam::{DVec2, DVec3, dvec2};
 
 /// A pinhole with a box filter: a pixel is the mean radiance over its area on the image plane.
@@ -72,7 +75,7 @@ impl Camera {
         if columns == 0 || rows == 0 {
             return Err(SceneError::NoPixels { what: "resolution" });
         }
-        let half_height = (0.5 * vertical_fov_degrees).to_radians().tan();
+        let half_height = tan((0.5 * vertical_fov_degrees).to_radians());
         let half_extent = dvec2(half_height * f64::from(columns) / f64::from(rows), half_height);
         Ok(Self { origin, forward, right: -left, up: forward.cross(left), half_extent, resolution })
     }
@@ -104,11 +107,27 @@ impl Camera {
     #[inline]
     #[must_use]
     pub fn ray(&self, pixel: [u32; 2], within: [f64; 2]) -> Line {
+        let [column, row] = pixel.map(f64::from);
+        Line { origin: self.origin, direction: self.direction(column + within[0], row + within[1]) }
+    }
+
+    /// The directions of [`ray`](Self::ray) in all lanes, by columns and rows with their fractions.
+    #[inline(always)]
+    #[must_use]
+    pub fn directions(&self, columns: &Lanes, rows: &Lanes) -> [Lanes; 3] {
+        let mut directions = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            set_vector(&mut directions, i, self.direction(columns[i], rows[i]));
+        }
+        directions
+    }
+
+    #[inline(always)]
+    fn direction(&self, column: f64, row: f64) -> DVec3 {
         let [columns, rows] = self.resolution.map(f64::from);
-        let x = self.half_extent.x * (2.0 * (f64::from(pixel[0]) + within[0]) / columns - 1.0);
-        let y = self.half_extent.y * (1.0 - 2.0 * (f64::from(pixel[1]) + within[1]) / rows);
-        let direction = (self.forward + x * self.right + y * self.up).normalize();
-        Line { origin: self.origin, direction }
+        let x = self.half_extent.x * (2.0 * column / columns - 1.0);
+        let y = self.half_extent.y * (1.0 - 2.0 * row / rows);
+        (self.forward + x * self.right + y * self.up).normalize()
     }
 
     /// Image of a point; `None` beside the picture, behind the camera, or at the pinhole itself.

@@ -1,12 +1,13 @@
 //! Directions drawn by closed forms, and frames about them.
 
+use fairflight_elementary::sin_cos;
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
 
 /// Uniform on the unit sphere.
 pub(crate) fn on_sphere(u: f64, v: f64) -> DVec3 {
     let z = 1.0 - 2.0 * u;
-    let (sin, cos) = (TAU * v).sin_cos();
+    let (sin, cos) = sin_cos(TAU * v);
     let horizontal = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
     dvec3(horizontal * cos, horizontal * sin, z)
 }
@@ -21,7 +22,7 @@ pub(crate) fn across(axis: DVec3) -> (DVec3, DVec3) {
 #[inline]
 pub(crate) fn about(axis: DVec3, (sin, cos): (f64, f64), v: f64) -> DVec3 {
     let (x, y) = across(axis);
-    let (up, right) = (TAU * v).sin_cos();
+    let (up, right) = sin_cos(TAU * v);
     sin * right * x + sin * up * y + cos * axis
 }
 

@@ -1,6 +1,7 @@
 //! A radiance for each direction, as a picture.
 
 use crate::{SceneError, Spectrum};
+use fairflight_elementary::{acos, atan2, cos, sin_cos};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
 
@@ -53,9 +54,9 @@ impl<C: Spectrum> EnvironmentMap<C> {
     /// The radiance from a direction of unit length.
     #[must_use]
     pub fn radiance(&self, towards: DVec3) -> C {
-        let turn = towards.x.atan2(towards.z) / TAU;
+        let turn = atan2(towards.x, towards.z) / TAU;
         let u = if turn < 0.0 { turn + 1.0 } else { turn };
-        let v = towards.y.clamp(-1.0, 1.0).acos() / PI;
+        let v = acos(towards.y.clamp(-1.0, 1.0)) / PI;
         let column = ((u * self.width as f64) as usize).min(self.width - 1);
         let row = ((v * self.height as f64) as usize).min(self.height - 1);
         self.pixels[row * self.width + column]
@@ -89,12 +90,13 @@ impl<C: Spectrum> EnvironmentMap<C> {
         let y = above + v * (below - above);
         let azimuth = TAU * (column as f64 + u) / self.width as f64;
         let horizontal = ((1.0 - y) * (1.0 + y)).max(0.0).sqrt();
-        Some((dvec3(horizontal * azimuth.sin(), y, horizontal * azimuth.cos()), self.pixels[pixel]))
+        let (sin, cos) = sin_cos(azimuth);
+        Some((dvec3(horizontal * sin, y, horizontal * cos), self.pixels[pixel]))
     }
 
     /// The cosines of the upper and the lower edge of a row.
     fn cosines(&self, row: usize) -> [f64; 2] {
-        [row, row + 1].map(|edge| (PI * edge as f64 / self.height as f64).cos())
+        [row, row + 1].map(|edge| cos(PI * edge as f64 / self.height as f64))
     }
 
     /// Solid angle of a pixel in this row \[sr\].

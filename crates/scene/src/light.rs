@@ -2,6 +2,7 @@
 
 use crate::directions::{across, on_sphere};
 use crate::{Background, SceneError, Spectrum};
+use fairflight_elementary::sin_cos;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -134,7 +135,7 @@ impl<C: Spectrum> Lights<C> {
         let disc = PI * radius * radius;
         let from = |towards: DVec3| {
             let (x, y) = across(towards);
-            let (sin, cos) = (TAU * u[4]).sin_cos();
+            let (sin, cos) = sin_cos(TAU * u[4]);
             let off = radius * u[3].sqrt();
             center + towards * radius + off * (cos * x + sin * y)
         };

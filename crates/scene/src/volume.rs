@@ -1,7 +1,9 @@
 //! The scattering medium of a scene.
 
 use crate::{Connection, Spectrum};
-use fairflight_media::{Bounds, Clip, Line, Medium, Ray};
+use fairflight_elementary::lanes::{LANES, Lanes};
+use fairflight_media::lanes::vector;
+use fairflight_media::{Bounds, Clip, Clips, Line, Medium, Ray};
 use glam::DVec3;
 
 /// A medium in its bounds, with how much and whereto it scatters. Outside the bounds is vacuum.
@@ -43,6 +45,39 @@ impl<M: Medium, P, C: Spectrum> Volume<M, P, C> {
         // A line of finite numbers and of unit direction is what the constructors of cameras and lights guarantee.
         let clip = self.bounds.clip(line.origin, line.direction, length).ok().flatten()?;
         (clip.length > 0.0).then(|| Ray::new(&self.medium, &clip))
+    }
+
+    /// The parts inside the bounds of endless rays, those of [`enter`](Self::enter), in all lanes.
+    #[inline(always)]
+    pub fn enter_lanes(&self, origins: &[Lanes; 3], directions: &[Lanes; 3]) -> Clips {
+        let misses = self.bounds.certainly_misses_lanes(origins, directions);
+        if misses.iter().fold(true, |all, misses| all & misses) {
+            return Clips::NONE;
+        }
+        let mut some_are_inside = false;
+        for i in 0..LANES {
+            some_are_inside |= self.bounds.contains(vector(origins, i));
+        }
+        let mut clips = self.bounds.clip_lanes(origins, directions);
+        for (length, misses) in clips.lengths.iter_mut().zip(misses) {
+            *length = if misses { 0.0 } else { *length };
+        }
+        if some_are_inside {
+            self.begin_inside(origins, directions, &mut clips);
+        }
+        clips
+    }
+
+    /// Rays that begin inside go on as they are.
+    #[cold]
+    #[inline(never)]
+    fn begin_inside(&self, origins: &[Lanes; 3], directions: &[Lanes; 3], clips: &mut Clips) {
+        for i in 0..LANES {
+            let (origin, direction) = (vector(origins, i), vector(directions, i));
+            if self.bounds.contains(origin) {
+                clips.set(i, &self.bounds.clip_inside(Line { origin, direction }));
+            }
+        }
     }
 
     /// The rest of a ray that starts inside the bounds, as a profile.

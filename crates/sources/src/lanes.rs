@@ -1,8 +1,7 @@
 //! Several seeded streams side by side, one a lane.
 
+use crate::seeded::{Seeded, step};
 use fairflight_elementary::lanes::{LANES, Lanes, ln};
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// xoshiro256++ in lanes, each a stream of its own seed.
 ///
@@ -16,33 +15,52 @@ pub struct SeededLanes {
 }
 
 impl SeededLanes {
+    /// Lanes that wait for a stream each: until then all their variates are 0.
+    pub const IDLE: Self = Self { words: [[0; LANES]; 4] };
+
     /// The streams of these seeds.
     #[must_use]
     pub fn new(seeds: [u64; LANES]) -> Self {
-        let mut words = [[0; LANES]; 4];
+        let mut lanes = Self::IDLE;
         for (lane, seed) in seeds.into_iter().enumerate() {
-            // As `Seeded` fills its state.
-            let mut filler = SplitMix64::seed_from_u64(seed);
-            words.iter_mut().for_each(|word| word[lane] = filler.next_u64());
+            lanes.set(lane, &Seeded::new(seed));
         }
-        Self { words }
+        lanes
+    }
+
+    /// The stream of a lane as it stands.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, lane: usize) -> Seeded {
+        let [a, b, c, d] = &self.words;
+        Seeded { words: [a[lane], b[lane], c[lane], d[lane]] }
+    }
+
+    /// Puts a stream into a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, stream: &Seeded) {
+        for (word, of_stream) in self.words.iter_mut().zip(stream.words) {
+            word[lane] = of_stream;
+        }
     }
 
     /// The next variate of every lane, each a multiple of 2^−53 in \[0, 1).
     #[inline(always)]
     pub fn next_uniforms(&mut self) -> Lanes {
+        self.next_uniforms_where(&[true; LANES])
+    }
+
+    /// The next variate of the lanes that draw; the streams of the others stay where they are, and what stands in their places is of no use.
+    #[inline(always)]
+    pub fn next_uniforms_where(&mut self, draws: &[bool; LANES]) -> Lanes {
         let mut variates = [0.0; LANES];
         let [a, b, c, d] = &mut self.words;
         for i in 0..LANES {
-            let sum = a[i].wrapping_add(d[i]).rotate_left(23).wrapping_add(a[i]);
-            variates[i] = on_lattice(sum);
-            let shifted = b[i] << 17;
-            c[i] ^= a[i];
-            d[i] ^= b[i];
-            b[i] ^= c[i];
-            a[i] ^= d[i];
-            c[i] ^= shifted;
-            d[i] = d[i].rotate_left(45);
+            let (word, after) = step([a[i], b[i], c[i], d[i]]);
+            variates[i] = on_lattice(word);
+            let kept = |before: u64, after: u64| if draws[i] { after } else { before };
+            (a[i], b[i]) = (kept(a[i], after[0]), kept(b[i], after[1]));
+            (c[i], d[i]) = (kept(c[i], after[2]), kept(d[i], after[3]));
         }
         variates
     }
@@ -95,6 +113,20 @@ mod tests {
             };
             assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits));
         }
+    }
+
+    #[test]
+    fn a_lane_that_does_not_draw_stays_where_it_is() {
+        let mut lanes = SeededLanes::new(std::array::from_fn(|lane| lane as u64));
+        let mut streams: [Seeded; LANES] = std::array::from_fn(|lane| lanes.get(lane));
+        for k in 0..100 {
+            let draws = std::array::from_fn(|lane| (k * lane) % 3 == 0);
+            let found = lanes.next_uniforms_where(&draws);
+            for (lane, stream) in streams.iter_mut().enumerate().filter(|(lane, _)| draws[*lane]) {
+                assert_eq!(found[lane], stream.next_uniform());
+            }
+        }
+        assert!(streams.iter().enumerate().all(|(lane, stream)| lanes.get(lane) == *stream));
     }
 
     #[test]

@@ -1,19 +1,21 @@
 //! The seeded generator, and how one seed becomes one independent stream per batch.
 
 use crate::UniformSource;
-use rand::SeedableRng;
-use rand::rand_core::Rng;
-use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// xoshiro256++ from a 64-bit seed: the default source.
+/// xoshiro256++ (Blackman & Vigna 2021) from a 64-bit seed: the default source.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Seeded(pub(crate) Xoshiro256PlusPlus);
+pub struct Seeded {
+    pub(crate) words: [u64; 4],
+}
 
 impl Seeded {
     /// The stream of `seed`; the state is filled by SplitMix64, as the generator's authors advise.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+        let mut filler = SplitMix64::seed_from_u64(seed);
+        Self { words: std::array::from_fn(|_| filler.next_u64()) }
     }
 
     /// The stream of one batch of a run: independent of how batches are spread over threads or processes.
@@ -21,13 +23,29 @@ impl Seeded {
     pub fn for_batch(seed: u64, batch: u64) -> Self {
         Self::new(derive_seed(seed, batch))
     }
+
+    /// The next 64 bits.
+    #[inline]
+    pub(crate) fn next_word(&mut self) -> u64 {
+        let (word, words) = step(self.words);
+        self.words = words;
+        word
+    }
+}
+
+/// A step of the generator: 64 bits, and the state behind them.
+#[inline(always)]
+pub(crate) fn step([a, b, c, d]: [u64; 4]) -> (u64, [u64; 4]) {
+    let word = a.wrapping_add(d).rotate_left(23).wrapping_add(a);
+    let (third, fourth) = (c ^ a, d ^ b);
+    (word, [a ^ fourth, b ^ third, third ^ (b << 17), fourth.rotate_left(45)])
 }
 
 impl UniformSource for Seeded {
     #[inline]
     fn next_uniform(&mut self) -> f64 {
         // The 53 high bits, as a multiple of 2^-53.
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+        (self.next_word() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 }
 
@@ -67,6 +85,15 @@ fn mix(mut z: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    #[test]
+    fn the_words_are_those_of_the_generator() {
+        for seed in [0, 1, u64::MAX] {
+            let (mut ours, mut theirs) = (Seeded::new(seed), Xoshiro256PlusPlus::seed_from_u64(seed));
+            assert!((0..100).all(|_| ours.next_word() == theirs.next_u64()));
+        }
+    }
 
     /// Golden: the first variates of seed 1. They change only if the generator does, and then every report does.
     #[test]

@@ -2,6 +2,7 @@
 
 use super::VoxelLattice;
 use crate::Failure;
+use fairflight_elementary::lanes::Lanes;
 use fairflight_media::{
     AnalyticCosine, EmptySpace, ExpressionMedium, Homogeneous, Line, LineThickness, Medium, Perlin, Voxels,
 };
@@ -105,6 +106,10 @@ impl<M: Medium> Medium for OnlyLookUps<M> {
     #[inline]
     fn sigma_t_local(&self, point: DVec3) -> f64 {
         self.0.sigma_t_local(point)
+    }
+    #[inline(always)]
+    fn sigma_t_local_lanes(&self, points: &[Lanes; 3]) -> Lanes {
+        self.0.sigma_t_local_lanes(points)
     }
     fn upper_bound(&self) -> Option<f64> {
         self.0.upper_bound()

@@ -6,15 +6,16 @@ use super::metropolis::{ChainStarts, Learning, MetropolisPlan};
 use super::path_tracer::PathTracerPlan;
 use super::single_scattering::SingleScatteringPlan;
 use super::transport::{Stage, TransportPlan, VplPlan};
-use super::{AnyPhase, Tally, WalkPlan};
+use super::{AnyPhase, SpaceSampling, Tally, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, Unlawful};
 use crate::spec::{Adaptation, IntegratorSpec, Particles, ThicknessSpec, TransmittanceSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_paths::{Attenuation, Integrator, LineSplitting, ParticleTracer, Ratio};
-use fairflight_scene::{Spectrum, Volume};
-use fairflight_sources::Seeded;
+use fairflight_scene::{Camera, Spectrum, Volume};
+use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::{LineIntegral, Regular, Starts};
+use std::ops::ControlFlow;
 
 /// The volume of a scene whose medium has one type.
 pub type SceneVolume<'s, M, C> = Volume<M, &'s AnyPhase, C>;
@@ -62,6 +63,25 @@ pub trait TileIntegrator<C> {
     fn radiances(&mut self, lines: &[Line], radiances: &mut [C], source: &mut Seeded) {
         for (line, radiance) in lines.iter().zip(radiances) {
             *radiance = self.radiance(line, source);
+        }
+    }
+
+    /// Draws so many estimates for each of `pixels`, each pixel from a stream of its own, until `take` says that it is enough: it is told the
+    /// number of the pixel with each. Unless the integrator says otherwise, one pixel after the other; those of one pixel are in order in any case.
+    fn pixels(
+        &mut self,
+        camera: &Camera,
+        (pixels, samples): (&[[u32; 2]], u32),
+        sources: &mut [Seeded],
+        take: &mut dyn FnMut(usize, C) -> ControlFlow<()>,
+    ) {
+        for (i, (pixel, source)) in pixels.iter().zip(sources).enumerate() {
+            for _ in 0..samples {
+                let within = [source.next_uniform(), source.next_uniform()];
+                if take(i, self.radiance(&camera.ray(*pixel, within), source)).is_break() {
+                    return;
+                }
+            }
         }
     }
 
@@ -131,6 +151,30 @@ impl<C: Spectrum, I: Integrator<C>> TileIntegrator<C> for Compiled<I> {
     }
     fn counts(&self) -> Counts {
         (self.counts)(&self.integrator)
+    }
+}
+
+/// A particle tracer, whose pixels are drawn in lanes.
+struct InLanes<'s, M, C>(ParticleTracer<'s, M, &'s AnyPhase, C, SpaceSampling<'s>>);
+
+impl<M: LineThickness, C: Spectrum> TileIntegrator<C> for InLanes<'_, M, C> {
+    fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C {
+        self.0.radiance(line, source)
+    }
+    /// Pixel beside pixel; whatever `take` says, all of them.
+    fn pixels(
+        &mut self,
+        camera: &Camera,
+        work: (&[[u32; 2]], u32),
+        sources: &mut [Seeded],
+        take: &mut dyn FnMut(usize, C) -> ControlFlow<()>,
+    ) {
+        self.0.trace(camera, work, sources, |pixel, radiance| {
+            let _ = take(pixel, radiance);
+        });
+    }
+    fn counts(&self) -> Counts {
+        Counts::cut(self.0.truncated())
     }
 }
 
@@ -276,10 +320,7 @@ impl IntegratorPlan {
         }
         Ok(match self {
             Self::Transmittance(shadow) => plain(Attenuation::new(volume, lights, shadow.worker(unlawful))),
-            Self::ParticleTracer(walk) => {
-                let tracer = ParticleTracer::new(volume, lights, walk.walk());
-                counting(tracer, |tracer| Counts::cut(tracer.truncated()))
-            }
+            Self::ParticleTracer(walk) => Box::new(InLanes(ParticleTracer::new(volume, lights, walk.walk()))),
             Self::PhotonTracer(walk) => {
                 plain(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling())))
             }

@@ -1,5 +1,6 @@
 //! A phase function of any kind.
 
+use fairflight_elementary::lanes::Lanes;
 use fairflight_media::PhaseFunction;
 use fairflight_media::phase::{HenyeyGreenstein, Isotropic, Rayleigh, Schlick, Tabulated};
 
@@ -48,6 +49,17 @@ impl PhaseFunction for AnyPhase {
             Self::HenyeyGreenstein(phase) => phase.sample_cosine(u),
             Self::Schlick(phase) => phase.sample_cosine(u),
             Self::Tabulated(phase) => phase.sample_cosine(u),
+        }
+    }
+
+    #[inline(always)]
+    fn sample_cosine_lanes(&self, u: &Lanes) -> Lanes {
+        match self {
+            Self::Isotropic(phase) => phase.sample_cosine_lanes(u),
+            Self::Rayleigh(phase) => phase.sample_cosine_lanes(u),
+            Self::HenyeyGreenstein(phase) => phase.sample_cosine_lanes(u),
+            Self::Schlick(phase) => phase.sample_cosine_lanes(u),
+            Self::Tabulated(phase) => phase.sample_cosine_lanes(u),
         }
     }
 

@@ -4,6 +4,7 @@ use crate::Failure;
 use crate::field::AnyMedium;
 use crate::spec::{SamplingFieldSpec, WalkSpec};
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
+use fairflight_elementary::lanes::Lanes;
 use fairflight_media::{Bounds, Line, Medium, PhaseFunction};
 use fairflight_paths::{
     Criticality, Grid, SamplingExtinction, Uniform, Walk, grows_nowhere, second_moment_growth,
@@ -138,6 +139,13 @@ impl SamplingExtinction for SpaceSampling<'_> {
         match self {
             Self::Uniform(uniform) => uniform.fly(line, from, length, depth),
             Self::Grid(grid) => grid.fly(line, from, length, depth),
+        }
+    }
+    #[inline(always)]
+    fn fly_lanes(&self, line: impl Fn(usize) -> Line, distances: [&Lanes; 3]) -> [Lanes; 2] {
+        match self {
+            Self::Uniform(uniform) => uniform.fly_lanes(line, distances),
+            Self::Grid(grid) => grid.fly_lanes(line, distances),
         }
     }
     fn highest(&self) -> f64 {

@@ -339,4 +339,58 @@ mod tests {
         let expected = batches.iter().map(|batch| (batch - mean).powi(2)).sum::<f64>() / 6.0;
         assert!((variance / expected - 1.0).abs() < 1e-2, "{variance}, expected {expected}");
     }
+
+    /// An integrator that draws one pixel after the other.
+    struct Apart<'a>(&'a mut dyn TileIntegrator<f64>);
+
+    impl TileIntegrator<f64> for Apart<'_> {
+        fn radiance(&mut self, line: &Line, source: &mut Seeded) -> f64 {
+            self.0.radiance(line, source)
+        }
+        fn counts(&self) -> Counts {
+            self.0.counts()
+        }
+    }
+
+    /// A scene whose pixels are drawn one after the other.
+    struct OneByOne<'a>(Box<dyn Scene<f64> + 'a>);
+
+    impl Scene<f64> for OneByOne<'_> {
+        fn prepare(&self, pass: usize) -> Result<(Batch<f64>, Spent), Failure> {
+            self.0.prepare(pass)
+        }
+        fn integrate(&self, batch: &Batch<f64>, work: &mut Work<'_, f64>) -> TileResult<f64> {
+            self.0.integrate(batch, &mut |integrator| work(&mut Apart(integrator)))
+        }
+    }
+
+    #[test]
+    fn neither_lanes_nor_threads_change_a_bit() {
+        let scene = include_str!("../../scenes/eq21-environment.json").replace("128, 128", "40, 30");
+        let forward = scene.replace("\"rayleigh\"", "\"henyey_greenstein\", \"g\": 0.7");
+        let cut = scene.replace("0.8 }", "0.8, \"max_collisions\": 9 }");
+        let point = "{ \"kind\": \"point\", \"position\": [0, 0, 10], \"power\": 600.0 }";
+        let lit = scene.replace("1.0 } ]", &format!("1.0 }}, {point} ]"));
+        for scene in [scene, forward, cut, lit] {
+            let spec = SceneSpec::parse(&scene, SceneOverrides::default()).unwrap();
+            let plan = ScenePlan::of(&spec, &MediumLibrary::default()).unwrap();
+            let Spectra::Gray(radiant) = &plan.spectra else { panic!("it is gray") };
+            let told = |threads: usize, one_by_one: bool| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let mut canvas = Canvas::new(plan.camera.resolution(), 5, None);
+                let draw = Draw { plan: &plan, radiant, seed: 5, advance: &|_| (), ends: &|| false };
+                pool.install(|| {
+                    let scene: Box<dyn Scene<f64>> =
+                        if one_by_one { Box::new(OneByOne(draw.compiled())) } else { draw.compiled() };
+                    for samples in [3, 1] {
+                        draw.add(&*scene, &mut canvas, samples).unwrap();
+                    }
+                });
+                let drawn = canvas.drawn(false);
+                (drawn.pixels, canvas.pass_means, drawn.cost.lookups, drawn.cost.truncated)
+            };
+            let expected = told(1, true);
+            assert!(told(1, false) == expected && told(2, false) == expected, "{scene}");
+        }
+    }
 }

@@ -8,6 +8,7 @@ use crate::spec::ReuseSpec;
 use fairflight_paths::extend::PixelGroups;
 use fairflight_scene::{Camera, Spectrum};
 use fairflight_sources::{Seeded, UniformSource};
+use std::ops::ControlFlow;
 
 /// Columns and rows of a tile.
 const SIDE: u32 = 16;
@@ -176,17 +177,24 @@ impl<C: Spectrum> Tile<C> {
         (drawn, samples, seed): (u32, u32, u64),
         take: impl Fn(&mut Pixel<C>, &mut Vec<C>, C),
     ) -> Result<Added<C>, Failure> {
-        let mut sum = 0.0;
-        let pixels = self.pixels.iter_mut().zip(&mut self.sources);
-        for (position, (pixel, source)) in self.area.positions().zip(pixels) {
-            for i in 0..samples {
-                let within = [source.next_uniform(), source.next_uniform()];
-                let radiance = integrator.radiance(&camera.ray(position, within), source);
-                check(radiance, position, (drawn + i, seed), integrator)?;
-                sum += radiance.mean();
-                take(pixel, &mut self.waiting, radiance);
+        let positions = Vec::from_iter(self.area.positions());
+        let Self { pixels, sources, waiting, .. } = self;
+        // Pixel by pixel, so that the sum does not depend on the order of pixels.
+        let mut sums = vec![(0.0, 0); positions.len()];
+        let mut refused: Option<(usize, u32, C)> = None;
+        integrator.pixels(camera, (&positions, samples), sources, &mut |pixel, radiance| {
+            let (sum, count) = &mut sums[pixel];
+            if !radiance.is_finite() && refused.is_none_or(|(first, ..)| pixel < first) {
+                refused = Some((pixel, *count, radiance));
             }
+            (*sum, *count) = (*sum + radiance.mean(), *count + 1);
+            take(&mut pixels[pixel], waiting, radiance);
+            if refused.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        if let Some((pixel, sample, radiance)) = refused {
+            check(radiance, positions[pixel], (drawn + sample, seed), integrator)?;
         }
+        let sum = sums.iter().map(|(sum, _)| sum).sum();
         Ok(Added { sum, counts: integrator.counts(), splatted: integrator.splatted() })
     }
 

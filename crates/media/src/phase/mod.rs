@@ -15,6 +15,7 @@ pub use rayleigh::Rayleigh;
 pub use schlick::Schlick;
 pub use tabulated::Tabulated;
 
+use fairflight_elementary::lanes::{LANES, Lanes};
 use glam::DVec3;
 
 /// A phase function of the angle between the direction of travel before and after the collision.
@@ -32,6 +33,16 @@ pub trait PhaseFunction {
     /// within \[−1, 1\] for every `u` in \[0, 1).
     fn sample_cosine(&self, u: f64) -> f64;
 
+    /// The cosines of all lanes, each with the bits of [`sample_cosine`](Self::sample_cosine).
+    #[inline(always)]
+    fn sample_cosine_lanes(&self, u: &Lanes) -> Lanes {
+        let mut cosines = [0.0; LANES];
+        for i in 0..LANES {
+            cosines[i] = self.sample_cosine(u[i]);
+        }
+        cosines
+    }
+
     /// ∫ cosine · eval over the sphere \[1\], in \[−1, 1\].
     fn mean_cosine(&self) -> f64;
 
@@ -39,8 +50,14 @@ pub trait PhaseFunction {
     #[inline]
     fn sample(&self, incident: DVec3, u: f64, v: f64) -> Scattered {
         let cosine = self.sample_cosine(u);
-        let direction = frame::deflect(incident, cosine, std::f64::consts::TAU * v);
+        let direction = frame::deflect(incident, cosine, v);
         Scattered { direction, weight: 1.0, pdf_solid_angle: self.eval(cosine) }
+    }
+
+    /// The directions of [`sample`](Self::sample) in all lanes.
+    #[inline(always)]
+    fn sample_lanes(&self, incident: &[Lanes; 3], u: &Lanes, v: &Lanes) -> [Lanes; 3] {
+        frame::deflect_lanes(incident, &self.sample_cosine_lanes(u), v)
     }
 }
 
@@ -64,7 +81,49 @@ impl<P: PhaseFunction + ?Sized> PhaseFunction for &P {
     fn sample_cosine(&self, u: f64) -> f64 {
         (**self).sample_cosine(u)
     }
+    #[inline(always)]
+    fn sample_cosine_lanes(&self, u: &Lanes) -> Lanes {
+        (**self).sample_cosine_lanes(u)
+    }
     fn mean_cosine(&self) -> f64 {
         (**self).mean_cosine()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{set_vector, vector};
+    use crate::test_support::random;
+
+    fn lanes_are_one(phase: &impl PhaseFunction) {
+        let mut next = random(3);
+        for _ in 0..100 {
+            let (u, v) = (std::array::from_fn(|_| next()), std::array::from_fn(|_| next()));
+            let mut incident = [[0.0; LANES]; 3];
+            for lane in 0..LANES {
+                let direction = DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5).normalize();
+                set_vector(&mut incident, lane, direction);
+            }
+            let found = phase.sample_lanes(&incident, &u, &v);
+            for lane in 0..LANES {
+                let expected = phase.sample(vector(&incident, lane), u[lane], v[lane]).direction;
+                assert_eq!(
+                    vector(&found, lane).to_array().map(f64::to_bits),
+                    expected.to_array().map(f64::to_bits)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn directions_of_lanes_are_those_of_one() {
+        lanes_are_one(&Isotropic);
+        lanes_are_one(&Rayleigh);
+        for g in [-0.9, 0.0, 1e-7, 0.6, 0.999] {
+            lanes_are_one(&HenyeyGreenstein::new(g).unwrap());
+            lanes_are_one(&Schlick::new(g).unwrap());
+        }
+        lanes_are_one(&Tabulated::hazy_mie(33).unwrap());
     }
 }

@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 
 /// eval = 3/(16π) · (1 + μ²), unpolarised.
 ///
-/// The distribution function of μ is (μ³ + 3μ + 4)/8; solving μ³ + 3μ = 2z with z = 4u − 2 by Cardano's formula gives
-/// μ = A − 1/A, A = ∛(z + √(z² + 1)), written for |z| so that nothing cancels.
+/// The distribution function of μ is (μ³ + 3μ + 4)/8. With z = 4u − 2 it is inverted by the root of f = μ³ + 3μ − 2|z| in \[0, 1\], to which Newton's steps go from a
+/// polynomial that is right to 1 %. f is convex there: a relative error δ becomes δ² μ²/(1 + μ²) ≤ δ²/2, and is below 1e-18 after three. There is no
+/// cube root and no cancellation, and the bits are the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rayleigh;
 
@@ -17,9 +18,15 @@ impl PhaseFunction for Rayleigh {
     }
     #[inline]
     fn sample_cosine(&self, u: f64) -> f64 {
+        const START: [f64; 3] = [0.6605, -0.0673, 0.0069];
         let z = 4.0 * u - 2.0;
-        let a = (z.abs() + (z * z + 1.0).sqrt()).cbrt();
-        (a - 1.0 / a).min(1.0).copysign(z)
+        let (size, square) = (z.abs(), z * z);
+        let mut mu = size * (START[0] + square * (START[1] + square * START[2]));
+        for _ in 0..3 {
+            let square = mu * mu;
+            mu -= (mu * (square + 3.0) - 2.0 * size) / (3.0 * (square + 1.0));
+        }
+        if mu < 1.0 { mu } else { 1.0 }.copysign(z)
     }
     fn mean_cosine(&self) -> f64 {
         0.0

@@ -1,6 +1,7 @@
 //! Henyey and Greenstein's lobe without the root.
 
 use super::{PhaseError, PhaseFunction};
+use fairflight_elementary::ln_1p;
 use std::f64::consts::PI;
 
 /// eval = (1 − k²)/(4π (1 − kμ)²), −1 < k < 1, forward for k > 0 (blasi-1993; lafortune-1996 uses it).
@@ -50,7 +51,7 @@ impl PhaseFunction for Schlick {
     fn mean_cosine(&self) -> f64 {
         let k = self.k.abs();
         if k > LARGE {
-            let artanh = 0.5 * (2.0 * k / (1.0 - k)).ln_1p();
+            let artanh = 0.5 * ln_1p(2.0 * k / (1.0 - k));
             return (1.0 / k - (1.0 - k) * (1.0 + k) * artanh / (k * k)).copysign(self.k);
         }
         // Smallest terms first; the first one left out is 4^-26 of the sum.

@@ -1,6 +1,7 @@
 //! Ray marching for single scattering (perlin-1989): **biased**, and labelled so.
 
 use crate::{Integrator, arriving};
+use fairflight_elementary::exp;
 use fairflight_media::{Extinction, Line, Medium, PhaseFunction};
 use fairflight_scene::{Lights, Spectrum, Volume};
 use fairflight_sources::UniformSource;
@@ -46,7 +47,7 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum> Integrator<C> for Marching<'_, M,
         for k in 0..*steps {
             let s = (f64::from(k) + offset) * step;
             let sigma_t = ray.sigma_t(s);
-            let inside = (-sigma_t * step).exp();
+            let inside = exp(-sigma_t * step);
             let point = ray.world_point(s);
             for light in &lights.sources {
                 let Some(connection) = light.connect(point) else { continue };

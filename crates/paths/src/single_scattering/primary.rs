@@ -1,6 +1,7 @@
 //! Transmittance of the camera ray at every distance, from one walk.
 
 use fairflight_collision::CollisionModel;
+use fairflight_elementary::exp;
 use fairflight_media::{Constant, Extinction, LineThickness, Medium, OpticalThickness, Ray, Vacuum};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{Explorers, Interaction, Regular, Tracking, TransmittanceFunction};
@@ -101,7 +102,7 @@ impl<L: CollisionModel + Copy> Tracked<L> {
 
     /// The control's transmittance up to `s`.
     fn main(&self, s: f64) -> f64 {
-        self.control.as_ref().map_or(1.0, |control| (-control.explorers.optical_thickness(0.0, s)).exp())
+        self.control.as_ref().map_or(1.0, |control| exp(-control.explorers.optical_thickness(0.0, s)))
     }
 }
 
@@ -138,7 +139,7 @@ impl<M: LineThickness> Primary<M> for Regular {
     fn trace(&mut self, _ray: &Ray<&M>, _source: &mut impl UniformSource) {}
     #[inline]
     fn transmittance(&self, ray: &Ray<&M>, s: f64) -> f64 {
-        (-ray.optical_thickness(0.0, s)).exp()
+        exp(-ray.optical_thickness(0.0, s))
     }
     fn interactions(&self) -> &[Interaction] {
         &[]

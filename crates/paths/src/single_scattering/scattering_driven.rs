@@ -1,5 +1,6 @@
 //! Distances along a ray that mimic transmittance times extinction, from a fitted extinction.
 
+use fairflight_elementary::{exp, exp_m1, ln_1p};
 use fairflight_transmittance::Explorers;
 
 /// The density of the first collision in a piecewise linear extinction through explorers, mixed with a uniform one.
@@ -34,7 +35,7 @@ impl ScatteringDriven {
             let trapezoid = 0.5 * self.spacing * (self.values[i - 1] + self.values[i]);
             self.depth.push(self.depth[i - 1] + trapezoid);
         }
-        self.collides = -(-self.depth[self.depth.len() - 1]).exp_m1();
+        self.collides = -exp_m1(-self.depth[self.depth.len() - 1]);
     }
 
     fn share_of_uniform(&self) -> f64 {
@@ -49,7 +50,7 @@ impl ScatteringDriven {
             return u / uniform * self.length;
         }
         let v = (u - uniform) / (1.0 - uniform);
-        let target = -(-v * self.collides).ln_1p();
+        let target = -ln_1p(-v * self.collides);
         let piece = self.depth[1..].partition_point(|&depth| depth <= target).min(self.values.len() - 2);
         // d = a t + (b − a) t²/(2h) solved for t: 2 d/(a + √(a² + 2 d (b − a)/h)) does not cancel.
         let (a, b) = (self.values[piece], self.values[piece + 1]);
@@ -70,7 +71,7 @@ impl ScatteringDriven {
             let (a, b) = (self.values[piece], self.values[piece + 1]);
             let sigma = a + (b - a) * (t / self.spacing);
             let depth = self.depth[piece] + 0.5 * t * (a + sigma);
-            pdf += (1.0 - uniform) * sigma * (-depth).exp() / self.collides;
+            pdf += (1.0 - uniform) * sigma * exp(-depth) / self.collides;
         }
         pdf
     }

@@ -1,5 +1,6 @@
 //! Distances along a ray that mimic the inverse square of a point light: the Cauchy distribution, also called equiangular.
 
+use fairflight_elementary::{atan2, tan};
 use fairflight_media::Line;
 use glam::DVec3;
 
@@ -24,8 +25,8 @@ impl SourceDriven {
         let offset = position - line.origin;
         let closest = offset.dot(line.direction);
         let distance = (offset - closest * line.direction).length();
-        let from = (-closest).atan2(distance);
-        let to = (length - closest).atan2(distance);
+        let from = atan2(-closest, distance);
+        let to = atan2(length - closest, distance);
         Self { closest, distance, from, angle: to - from, length }
     }
 
@@ -33,7 +34,7 @@ impl SourceDriven {
     #[inline]
     #[must_use]
     pub fn sample(&self, u: f64) -> f64 {
-        let s = self.closest + self.distance * (self.from + u * self.angle).tan();
+        let s = self.closest + self.distance * tan(self.from + u * self.angle);
         // Rounding may carry it over an end.
         s.clamp(0.0, self.length)
     }

@@ -6,6 +6,8 @@
 mod products;
 mod tracking;
 
+pub use products::Products;
+
 use crate::TransmittanceEstimator;
 use fairflight_elementary::lanes::{LANES, Lanes};
 use fairflight_media::Extinction;

@@ -4,18 +4,19 @@ use crate::SignedProduct;
 use fairflight_elementary::lanes::{LANES, Lanes};
 
 /// A [`SignedProduct`] in each lane.
-pub(super) struct Products {
+#[derive(Clone, Copy, Debug)]
+pub struct Products {
     mantissas: Lanes,
     scales: [i64; LANES],
 }
 
 impl Products {
-    /// Empty products.
-    pub(super) const ONE: Self = Self { mantissas: [1.0; LANES], scales: [0; LANES] };
+    /// Empty products: 1 in all lanes.
+    pub const ONE: Self = Self { mantissas: [1.0; LANES], scales: [0; LANES] };
 
     /// [`SignedProduct::multiply`] in each lane.
     #[inline(always)]
-    pub(super) fn multiply(&mut self, factors: &Lanes) {
+    pub fn multiply(&mut self, factors: &Lanes) {
         let mut products = [0.0; LANES];
         let mut all_keep = true;
         for i in 0..LANES {
@@ -48,7 +49,8 @@ impl Products {
 
     /// The product of a lane, which begins anew.
     #[inline]
-    pub(super) fn take(&mut self, lane: usize) -> SignedProduct {
+    #[must_use]
+    pub fn take(&mut self, lane: usize) -> SignedProduct {
         let product = self.get(lane);
         (self.mantissas[lane], self.scales[lane]) = (1.0, 0);
         product

@@ -1,6 +1,7 @@
 //! Density of the second vertex of a path, drawn from the first vertex of any path of a group.
 
 use crate::transport::{Types, Vertex, World};
+use fairflight_elementary::exp;
 use fairflight_media::{Extinction, LineThickness, OpticalThickness};
 use fairflight_scene::{Geometry, Hit, Segment};
 use glam::DVec3;
@@ -70,7 +71,7 @@ pub(super) fn factors<W: Types<Medium: LineThickness>>(
         let length = segment.length.is_finite().then_some(segment.length);
         let ray = world.volume.enter(&segment.line, length);
         let thickness = ray.map_or(0.0, |ray| ray.optical_thickness(0.0, ray.length()));
-        Factors { survival: origin.survival, scattered, geometric, transmittance: (-thickness).exp() }
+        Factors { survival: origin.survival, scattered, geometric, transmittance: exp(-thickness) }
     })
 }
 
