@@ -1,6 +1,7 @@
 //! Several seeded streams side by side, one a lane.
 
-use fairflight_elementary::lanes::{LANES, Lanes, ln};
+use crate::UniformSource;
+use fairflight_elementary::lanes::{LANES, Lanes, Mask, ln_of_normal};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
@@ -31,20 +32,27 @@ impl SeededLanes {
     /// The next variate of every lane, each a multiple of 2^−53 in \[0, 1).
     #[inline(always)]
     pub fn next_uniforms(&mut self) -> Lanes {
+        self.next_uniforms_of(&[u64::MAX; LANES])
+    }
+
+    /// The next variates of these lanes; the streams of the others stay where they are, and what stands in their place is of no use.
+    #[inline(always)]
+    pub fn next_uniforms_of(&mut self, lanes: &Mask) -> Lanes {
         let mut variates = [0.0; LANES];
         let [a, b, c, d] = &mut self.words;
         for i in 0..LANES {
-            let sum = a[i].wrapping_add(d[i]).rotate_left(23).wrapping_add(a[i]);
-            variates[i] = on_lattice(sum);
-            let shifted = b[i] << 17;
-            c[i] ^= a[i];
-            d[i] ^= b[i];
-            b[i] ^= c[i];
-            a[i] ^= d[i];
-            c[i] ^= shifted;
-            d[i] = d[i].rotate_left(45);
+            let before = [a[i], b[i], c[i], d[i]];
+            let (word, after) = step(before);
+            variates[i] = on_lattice(word);
+            let chosen = |k: usize| before[k] ^ ((before[k] ^ after[k]) & lanes[i]);
+            (a[i], b[i], c[i], d[i]) = (chosen(0), chosen(1), chosen(2), chosen(3));
         }
         variates
+    }
+
+    /// The stream of one lane, to be drawn from alone.
+    pub fn lane(&mut self, lane: usize) -> impl UniformSource {
+        OneLane { words: &mut self.words, lane }
     }
 
     /// The next exponential variate of every lane, of rate 1.
@@ -55,12 +63,43 @@ impl SeededLanes {
         for i in 0..LANES {
             rests[i] = 1.0 - uniforms[i];
         }
-        let mut variates = ln(&rests);
+        // From 2^−53 to 1.
+        let mut variates = ln_of_normal(&rests);
         for variate in &mut variates {
             *variate = -*variate;
         }
         variates
     }
+}
+
+/// A lane of [`SeededLanes`].
+struct OneLane<'a> {
+    words: &'a mut [[u64; LANES]; 4],
+    lane: usize,
+}
+
+impl UniformSource for OneLane<'_> {
+    #[inline]
+    fn next_uniform(&mut self) -> f64 {
+        let (word, after) = step(std::array::from_fn(|k| self.words[k][self.lane]));
+        for (words, after) in self.words.iter_mut().zip(after) {
+            words[self.lane] = after;
+        }
+        on_lattice(word)
+    }
+}
+
+/// xoshiro256++ (blackman-2021): a word, and the state behind it.
+#[inline(always)]
+fn step([mut a, mut b, mut c, mut d]: [u64; 4]) -> (u64, [u64; 4]) {
+    let word = a.wrapping_add(d).rotate_left(23).wrapping_add(a);
+    let shifted = b << 17;
+    c ^= a;
+    d ^= b;
+    b ^= c;
+    a ^= d;
+    c ^= shifted;
+    (word, [a, b, c, d.rotate_left(45)])
 }
 
 /// The 53 high bits of a word, as a multiple of 2^−53.
@@ -80,7 +119,8 @@ fn on_lattice(word: u64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Seeded, UniformSource};
+    use crate::Seeded;
+    use fairflight_elementary::lanes::{lanes_of, mask};
 
     #[test]
     fn lanes_are_seeded_streams() {
@@ -94,6 +134,22 @@ mod tests {
                 (lanes.next_uniforms(), streams.each_mut().map(UniformSource::next_uniform))
             };
             assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits));
+        }
+    }
+
+    #[test]
+    fn a_lane_goes_on_by_itself() {
+        let seeds = std::array::from_fn(|lane| 7 * lane as u64);
+        let mut lanes = SeededLanes::new(seeds);
+        let mut streams = seeds.map(Seeded::new);
+        for k in 0..200 {
+            let drawn: Mask = std::array::from_fn(|lane| mask((k * 5 + lane) % 3 == 0));
+            let found = lanes.next_uniforms_of(&drawn);
+            for lane in lanes_of(&drawn) {
+                assert_eq!(found[lane], streams[lane].next_uniform());
+            }
+            let alone = k % LANES;
+            assert_eq!(lanes.lane(alone).next_exponential(), streams[alone].next_exponential());
         }
     }
 
