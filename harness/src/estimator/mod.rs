@@ -58,7 +58,7 @@ pub use sampling::{AnySampling, SamplingSpec};
 pub use shadow::{Shadow, ShadowWorker};
 pub use single_particle::{SingleParticleSpec, VersionWord};
 pub use telescoping::TelescopingSpec;
-pub use trial::{AnyPieces, Estimator, Lawful, On, Trial};
+pub use trial::{AnyPieces, Estimator, InLanes, Lawful, On, Trial};
 pub use unbiased_ray_marching::{CombWord, RouletteSpec, UnbiasedRayMarchingSpec};
 pub use woodcock::WoodcockSpec;
 

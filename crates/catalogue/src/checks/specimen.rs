@@ -106,7 +106,7 @@ impl<F: SpecimenField> Specimen<F> {
     }
 
     /// Judges as [`Self::examine_with_lookups`] an estimator that runs in lanes: the same numbers.
-    pub(crate) fn examine_in_lanes<'f, E: ClosedForm<F>>(
+    pub(crate) fn examine_in_lanes<'f, E>(
         &'f self,
         estimator: &E,
         also: &[f64],
@@ -115,7 +115,7 @@ impl<F: SpecimenField> Specimen<F> {
         run: Run,
     ) -> CheckResult
     where
-        E: Lockstep<F> + for<'a> Lockstep<Watched<'a, F, E>>,
+        E: ClosedForm<F> + Lockstep<F> + for<'a> Lockstep<Watched<'a, F, E>>,
         for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
     {
         let expected = self.expected(estimator, also, scores, lookups);

@@ -58,8 +58,8 @@ impl Products {
     /// The products of these lanes begin anew.
     #[inline(always)]
     pub(super) fn restart(&mut self, lanes: &Mask) {
-        for i in 0..LANES {
-            self.mantissas[i] = select(lanes[i], 1.0, self.mantissas[i]);
+        for (mantissa, &restarts) in self.mantissas.iter_mut().zip(lanes) {
+            *mantissa = select(restarts, 1.0, *mantissa);
         }
         if self.are_scaled {
             self.restart_scales(lanes);
