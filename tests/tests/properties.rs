@@ -42,10 +42,10 @@ impl CollisionModel for AnyModel {
             Self::Single(model) => model.transmitted(r),
         }
     }
-    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
+    fn transmit_by(&self, r: f64, u: f64) -> Option<f64> {
         match self {
-            Self::Double(model) => model.transmit(r, source),
-            Self::Single(model) => model.transmit(r, source),
+            Self::Double(model) => model.transmit_by(r, u),
+            Self::Single(model) => model.transmit_by(r, u),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! The double particle model: both particles leave every collision (szirmay-kalos-2017 eq. 8, 10 and 11).
 
 use crate::{Albedo, Branch, CollisionModel};
-use fairflight_sources::UniformSource;
 
 /// Scattered energy a·r, transmitted energy 1 − r, both always: the Rao–Blackwellised Woodcock model.
 ///
@@ -15,6 +14,8 @@ pub struct DoubleParticle {
 }
 
 impl CollisionModel for DoubleParticle {
+    const DRAWS: bool = false;
+
     #[inline]
     fn admits(&self, r: f64) -> bool {
         r.is_finite()
@@ -31,7 +32,7 @@ impl CollisionModel for DoubleParticle {
     }
 
     #[inline]
-    fn transmit(&self, r: f64, _source: &mut impl UniformSource) -> Option<f64> {
+    fn transmit_by(&self, r: f64, _u: f64) -> Option<f64> {
         Some(1.0 - r)
     }
 }

@@ -9,6 +9,9 @@ use fairflight_sources::UniformSource;
 /// 1 − r (szirmay-kalos-2017 eq. 8), and [`transmit`](Self::transmit) draws the transmitted weight with exactly the
 /// probability and energy that `transmitted(r)` states.
 pub trait CollisionModel {
+    /// True if a transmission draws a variate, false if it is certain.
+    const DRAWS: bool = true;
+
     /// True if the model is defined at `r`; where it is not, it has no probabilities.
     fn admits(&self, r: f64) -> bool;
 
@@ -23,8 +26,14 @@ pub trait CollisionModel {
         Vec::new()
     }
 
+    /// The weight of the transmitted particle where the variate of [`transmit`](Self::transmit) is `u`; 0 is passed where none is drawn.
+    fn transmit_by(&self, r: f64, u: f64) -> Option<f64>;
+
     /// Draws the weight of the transmitted particle; `None` where no transmitted particle leaves and the walk ends.
-    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64>;
+    #[inline]
+    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
+        self.transmit_by(r, if Self::DRAWS { source.next_uniform() } else { 0.0 })
+    }
 }
 
 /// A model that keeps at most one of the two particles, so that a walk does not branch.

@@ -102,9 +102,9 @@ impl CollisionModel for SingleParticle {
     }
 
     #[inline]
-    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
+    fn transmit_by(&self, r: f64, u: f64) -> Option<f64> {
         let transmitted = self.transmitted(r);
-        if source.next_uniform() < transmitted.probability { Some(transmitted.energy) } else { None }
+        if u < transmitted.probability { Some(transmitted.energy) } else { None }
     }
 }
 

@@ -30,8 +30,8 @@ impl CollisionModel for Woodcock {
     /// Strictly `u < r`: where r = 0 no variate collides, where r = 1 every one does. (raab-2008 algorithm 1 as printed
     /// can collide where there is no matter.)
     #[inline]
-    fn transmit(&self, r: f64, source: &mut impl UniformSource) -> Option<f64> {
-        if source.next_uniform() < r { None } else { Some(1.0) }
+    fn transmit_by(&self, r: f64, u: f64) -> Option<f64> {
+        if u < r { None } else { Some(1.0) }
     }
 }
 

@@ -3,12 +3,16 @@
 //! One run tests three things at once: the mean, the variance against its closed form, and the number of look-ups; and
 //! that every look-up was lawful.
 
+mod in_lanes;
+
 use crate::lookups::{self, LookupLaw};
 use crate::{NotFinite, Run, Truth, Unit, batch_count, batch_moments, draw_batch};
 use fairflight_media::{Counted, Domain, Extinction, Violation, Watched};
 use fairflight_stats::reference::ROUNDING;
 use fairflight_stats::{ClosedMoments, Moments, Reference, Scores, Verdict, judge};
 use fairflight_transmittance::{Theory, TransmittanceEstimator};
+
+pub use in_lanes::check_in_lanes;
 
 /// Expectations about the estimates of one profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,31 +138,73 @@ where
     G: Extinction + Copy,
     E: TransmittanceEstimator<G> + TransmittanceEstimator<Observed<G, E>> + Copy,
 {
-    let observed: Observed<G, E> = Counted::new(Watched::new(field, Admitted { field, estimator }));
-    let scale = expected.unit().scale();
-    let (mut estimates, mut lookups) = (Moments::new(), Moments::new());
-    let (mut values, mut counts) = (Vec::new(), Vec::new());
+    let mut observed: Observed<G, E> = Counted::new(Watched::new(field, Admitted { field, estimator }));
+    let mut tally = Tally::new(expected, run);
     for batch in 0..batch_count(run.samples) {
+        tally.draw(&estimator, &mut observed, batch)?;
+    }
+    Ok(tally.judged())
+}
+
+/// A run, batch after batch.
+struct Tally<'a> {
+    expected: &'a Expectation,
+    run: Run,
+    /// Of the unit of the expectation.
+    scale: f64,
+    estimates: Moments,
+    lookups: Moments,
+    values: Vec<f64>,
+    counts: Vec<f64>,
+}
+
+impl<'a> Tally<'a> {
+    fn new(expected: &'a Expectation, run: Run) -> Self {
+        let (estimates, lookups) = (Moments::new(), Moments::new());
+        let scale = expected.unit().scale();
+        Self { expected, run, scale, estimates, lookups, values: Vec::new(), counts: Vec::new() }
+    }
+
+    /// Draws a batch from its stream.
+    fn draw<G, E>(&mut self, estimator: &E, observed: &mut Observed<G, E>, batch: u64) -> Result<(), Refusal>
+    where
+        G: Extinction,
+        E: TransmittanceEstimator<G> + TransmittanceEstimator<Observed<G, E>>,
+    {
+        let (mut values, mut counts) = (std::mem::take(&mut self.values), std::mem::take(&mut self.counts));
         counts.clear();
-        draw_batch(run.seed, batch, run.samples, &mut values, |source| {
+        draw_batch(self.run.seed, batch, self.run.samples, &mut values, |source| {
             let before = observed.lookups();
-            let estimate = scale * estimator.estimate(&observed, source);
+            let estimate = estimator.estimate(observed, source);
             counts.push((observed.lookups() - before) as f64);
             estimate
         });
         if let Some(violation) = observed.field().violation() {
             return Err(Refusal::Unlawful(violation));
         }
-        estimates.merge(&batch_moments(run.seed, batch, &values)?);
-        lookups.merge(&Moments::from_slice(&counts));
+        self.add(batch, &mut values, &counts)?;
+        (self.values, self.counts) = (values, counts);
+        Ok(())
     }
-    let (lookups_reference, level) = (expected.lookups_reference(), expected.level(run.alpha));
-    Ok(Evidence {
-        verdict: judge(&estimates, &expected.reference(), level),
-        lookups_verdict: lookups_reference.map(|reference| judge(&lookups, &reference, level)),
-        estimates,
-        lookups,
-    })
+
+    /// Adds the estimates of a batch, and the look-ups of each.
+    fn add(&mut self, batch: u64, estimates: &mut [f64], lookups: &[f64]) -> Result<(), NotFinite> {
+        estimates.iter_mut().for_each(|estimate| *estimate *= self.scale);
+        self.estimates.merge(&batch_moments(self.run.seed, batch, estimates)?);
+        self.lookups.merge(&Moments::from_slice(lookups));
+        Ok(())
+    }
+
+    fn judged(self) -> Evidence {
+        let Self { expected, run, estimates, lookups, .. } = self;
+        let (lookups_reference, level) = (expected.lookups_reference(), expected.level(run.alpha));
+        Evidence {
+            verdict: judge(&estimates, &expected.reference(), level),
+            lookups_verdict: lookups_reference.map(|reference| judge(&lookups, &reference, level)),
+            estimates,
+            lookups,
+        }
+    }
 }
 
 /// Judges as [`check`] for the estimates alone, unwatched and uncounted: what a wrong twin is tried with. All of the false

@@ -5,6 +5,8 @@
 //! and a gradient is read from a table, where the library hashes each corner by itself and jumps to one of 16 cases. Its tables are made
 //! here too: for 256 bytes it would bring a second version of `rand` into every program.
 
+mod lanes;
+
 use glam::DVec3;
 
 /// The noise of one seed. It has period 256 along each axis.
@@ -92,19 +94,7 @@ impl GradientNoise {
         );
         let ((i, x), (j, y), (k, z)) = (split(point.x), split(point.y), split(point.z));
 
-        // The hash of a corner, axis by axis: two values for x, four with y, eight with z.
-        let entry = |index: u8| self.permutation[usize::from(index)];
-        let (k0, k1) = (k, k.wrapping_add(1));
-        let plane = |i: u8| {
-            let hash = entry(i);
-            let row = |j: u8| {
-                let hash = entry(hash ^ j);
-                (entry(hash ^ k0), entry(hash ^ k1))
-            };
-            (row(j), row(j.wrapping_add(1)))
-        };
-        let (((h000, h001), (h010, h011)), ((h100, h101), (h110, h111))) =
-            (plane(i), plane(i.wrapping_add(1)));
+        let [h000, h001, h010, h011, h100, h101, h110, h111] = self.hashes(i, j, k);
 
         let (x1, y1, z1) = (x - 1.0, y - 1.0, z - 1.0);
         let (u, v, w) = (quintic(x), quintic(y), quintic(z));
@@ -119,6 +109,23 @@ impl GradientNoise {
             v,
         );
         mix(near, far, u) * AMPLITUDE
+    }
+
+    /// The hashes of the corners of a cell, axis by axis: two values for x, four with y, eight with z.
+    #[inline(always)]
+    fn hashes(&self, i: u8, j: u8, k: u8) -> [u8; 8] {
+        let entry = |index: u8| self.permutation[usize::from(index)];
+        let (k0, k1) = (k, k.wrapping_add(1));
+        let plane = |i: u8| {
+            let hash = entry(i);
+            let row = |j: u8| {
+                let hash = entry(hash ^ j);
+                [entry(hash ^ k0), entry(hash ^ k1)]
+            };
+            [row(j), row(j.wrapping_add(1))]
+        };
+        let [[[a, b], [c, d]], [[e, f], [g, h]]] = [plane(i), plane(i.wrapping_add(1))];
+        [a, b, c, d, e, f, g, h]
     }
 }
 
@@ -139,12 +146,12 @@ fn slope(hash: u8, x: f64, y: f64, z: f64) -> f64 {
 }
 
 /// 6t⁵ − 15t⁴ + 10t³: from 0 to 1 with two vanishing derivatives at either end.
-#[inline]
+#[inline(always)]
 fn quintic(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-#[inline]
+#[inline(always)]
 fn mix(a: f64, b: f64, t: f64) -> f64 {
     b * t + a * (1.0 - t)
 }

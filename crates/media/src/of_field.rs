@@ -8,6 +8,10 @@ macro_rules! of_field {
             fn sigma_t(&self, s: f64) -> f64 {
                 self.field.sigma_t(s)
             }
+            #[inline(always)]
+            fn sigma_t_lanes(&self, s: &fairflight_elementary::lanes::Lanes) -> fairflight_elementary::lanes::Lanes {
+                self.field.sigma_t_lanes(s)
+            }
             #[inline]
             fn length(&self) -> f64 {
                 self.field.length()

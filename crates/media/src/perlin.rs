@@ -5,6 +5,7 @@ mod enclosure;
 use crate::gradient_noise::GradientNoise;
 use crate::lattice_planes::PlaneCrossings;
 use crate::{FieldError, Line, Medium, MediumBreakpoints};
+use fairflight_elementary::lanes::{LANES, Lanes};
 use fairflight_elementary::pow;
 use glam::DVec3;
 
@@ -131,6 +132,16 @@ impl Perlin {
     }
 }
 
+impl Perlin {
+    /// σ_t of fBm.
+    #[inline(always)]
+    fn of_fbm(&self, fbm: f64) -> f64 {
+        let sigma_t = self.parameters.offset + self.parameters.scale * fbm;
+        // Not `max`, which would hide a NaN.
+        if sigma_t < 0.0 { 0.0 } else { sigma_t }
+    }
+}
+
 impl Medium for Perlin {
     fn local(&self, line: Line) -> Line {
         let frequency = self.parameters.frequency;
@@ -140,9 +151,28 @@ impl Medium for Perlin {
     /// NaN where a lattice coordinate is not finite.
     #[inline]
     fn sigma_t_local(&self, point: DVec3) -> f64 {
-        let sigma_t = self.parameters.offset + self.parameters.scale * self.fbm(point);
-        // Not `max`, which would hide a NaN.
-        if sigma_t < 0.0 { 0.0 } else { sigma_t }
+        self.of_fbm(self.fbm(point))
+    }
+    #[inline(always)]
+    fn sigma_t_local_lanes(&self, points: &[Lanes; 3]) -> Lanes {
+        let near = points.iter().flatten().fold(true, |near, c| near & (c.abs() < self.reach));
+        if !near {
+            let [x, y, z] = points;
+            return std::array::from_fn(|lane| self.sigma_t_local(DVec3::new(x[lane], y[lane], z[lane])));
+        }
+        // What a sum begins with, for the sign of its zeros.
+        let mut sum = [std::iter::empty::<f64>().sum::<f64>(); LANES];
+        for &(frequency, weight) in &self.octaves {
+            let mut lattice = *points;
+            lattice.iter_mut().flatten().for_each(|coordinate| *coordinate *= frequency);
+            for (sum, noise) in sum.iter_mut().zip(self.noise.at_lanes(&lattice)) {
+                *sum += weight * noise;
+            }
+        }
+        for sum in &mut sum {
+            *sum = self.of_fbm(sum.clamp(-1.0, 1.0));
+        }
+        sum
     }
     fn upper_bound(&self) -> Option<f64> {
         Some((self.parameters.offset + self.parameters.scale.abs()).max(0.0))

@@ -1,7 +1,8 @@
 //! Several seeded streams side by side, one a lane.
 
+use crate::UniformSource;
 use crate::seeded::{Seeded, step};
-use fairflight_elementary::lanes::{LANES, Lanes, ln};
+use fairflight_elementary::lanes::{LANES, Lanes, Mask, ln_of_normal};
 
 /// xoshiro256++ in lanes, each a stream of its own seed.
 ///
@@ -47,22 +48,27 @@ impl SeededLanes {
     /// The next variate of every lane, each a multiple of 2^−53 in \[0, 1).
     #[inline(always)]
     pub fn next_uniforms(&mut self) -> Lanes {
-        self.next_uniforms_where(&[true; LANES])
+        self.next_uniforms_of(&[u64::MAX; LANES])
     }
 
-    /// The next variate of the lanes that draw; the streams of the others stay where they are, and what stands in their places is of no use.
+    /// The next variates of these lanes; the streams of the others stay where they are, and what stands in their place is of no use.
     #[inline(always)]
-    pub fn next_uniforms_where(&mut self, draws: &[bool; LANES]) -> Lanes {
+    pub fn next_uniforms_of(&mut self, lanes: &Mask) -> Lanes {
         let mut variates = [0.0; LANES];
         let [a, b, c, d] = &mut self.words;
         for i in 0..LANES {
-            let (word, after) = step([a[i], b[i], c[i], d[i]]);
+            let before = [a[i], b[i], c[i], d[i]];
+            let (word, after) = step(before);
             variates[i] = on_lattice(word);
-            let kept = |before: u64, after: u64| if draws[i] { after } else { before };
-            (a[i], b[i]) = (kept(a[i], after[0]), kept(b[i], after[1]));
-            (c[i], d[i]) = (kept(c[i], after[2]), kept(d[i], after[3]));
+            let chosen = |k: usize| before[k] ^ ((before[k] ^ after[k]) & lanes[i]);
+            (a[i], b[i], c[i], d[i]) = (chosen(0), chosen(1), chosen(2), chosen(3));
         }
         variates
+    }
+
+    /// The stream of one lane, to be drawn from alone.
+    pub fn lane(&mut self, lane: usize) -> impl UniformSource {
+        OneLane { words: &mut self.words, lane }
     }
 
     /// The next exponential variate of every lane, of rate 1.
@@ -73,11 +79,29 @@ impl SeededLanes {
         for i in 0..LANES {
             rests[i] = 1.0 - uniforms[i];
         }
-        let mut variates = ln(&rests);
+        // From 2^−53 to 1.
+        let mut variates = ln_of_normal(&rests);
         for variate in &mut variates {
             *variate = -*variate;
         }
         variates
+    }
+}
+
+/// A lane of [`SeededLanes`].
+struct OneLane<'a> {
+    words: &'a mut [[u64; LANES]; 4],
+    lane: usize,
+}
+
+impl UniformSource for OneLane<'_> {
+    #[inline]
+    fn next_uniform(&mut self) -> f64 {
+        let (word, after) = step(std::array::from_fn(|k| self.words[k][self.lane]));
+        for (words, after) in self.words.iter_mut().zip(after) {
+            words[self.lane] = after;
+        }
+        on_lattice(word)
     }
 }
 
@@ -98,7 +122,7 @@ fn on_lattice(word: u64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Seeded, UniformSource};
+    use fairflight_elementary::lanes::{lanes_of, mask};
 
     #[test]
     fn lanes_are_seeded_streams() {
@@ -116,15 +140,18 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_that_does_not_draw_stays_where_it_is() {
-        let mut lanes = SeededLanes::new(std::array::from_fn(|lane| lane as u64));
-        let mut streams: [Seeded; LANES] = std::array::from_fn(|lane| lanes.get(lane));
-        for k in 0..100 {
-            let draws = std::array::from_fn(|lane| (k * lane) % 3 == 0);
-            let found = lanes.next_uniforms_where(&draws);
-            for (lane, stream) in streams.iter_mut().enumerate().filter(|(lane, _)| draws[*lane]) {
-                assert_eq!(found[lane], stream.next_uniform());
+    fn a_lane_goes_on_by_itself() {
+        let seeds = std::array::from_fn(|lane| 7 * lane as u64);
+        let mut lanes = SeededLanes::new(seeds);
+        let mut streams = seeds.map(Seeded::new);
+        for k in 0..200 {
+            let drawn: Mask = std::array::from_fn(|lane| mask((k * 5 + lane) % 3 == 0));
+            let found = lanes.next_uniforms_of(&drawn);
+            for lane in lanes_of(&drawn) {
+                assert_eq!(found[lane], streams[lane].next_uniform());
             }
+            let alone = k % LANES;
+            assert_eq!(lanes.lane(alone).next_exponential(), streams[alone].next_exponential());
         }
         assert!(streams.iter().enumerate().all(|(lane, stream)| lanes.get(lane) == *stream));
     }

@@ -1,10 +1,16 @@
 //! The seeded generator, and how one seed becomes one independent stream per batch.
 
 use crate::UniformSource;
+use rand::SeedableRng;
+use rand::rand_core::utils::fill_bytes_via_next_word;
+use rand::rand_core::{Rng, TryRng};
 use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use std::convert::Infallible;
 
-/// xoshiro256++ (Blackman & Vigna 2021) from a 64-bit seed: the default source.
+/// xoshiro256++ (Blackman & Vigna 2021) from a 64-bit seed: the default source, and a generator that the distributions of `rand` draw from.
+///
+/// Word by word it is `rand_xoshiro`'s `Xoshiro256PlusPlus`, as a test says. Its state is its own, so that a lane of [`SeededLanes`](crate::SeededLanes) can take a
+/// stream up where it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seeded {
     pub(crate) words: [u64; 4],
@@ -23,14 +29,6 @@ impl Seeded {
     pub fn for_batch(seed: u64, batch: u64) -> Self {
         Self::new(derive_seed(seed, batch))
     }
-
-    /// The next 64 bits.
-    #[inline]
-    pub(crate) fn next_word(&mut self) -> u64 {
-        let (word, words) = step(self.words);
-        self.words = words;
-        word
-    }
 }
 
 /// A step of the generator: 64 bits, and the state behind them.
@@ -41,11 +39,32 @@ pub(crate) fn step([a, b, c, d]: [u64; 4]) -> (u64, [u64; 4]) {
     (word, [a ^ fourth, b ^ third, third ^ (b << 17), fourth.rotate_left(45)])
 }
 
+impl TryRng for Seeded {
+    type Error = Infallible;
+
+    #[inline]
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        // The high bits: the lowest have linear dependencies.
+        Ok((self.next_u64() >> 32) as u32)
+    }
+
+    #[inline]
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        let (word, words) = step(self.words);
+        self.words = words;
+        Ok(word)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        fill_bytes_via_next_word(bytes, || self.try_next_u64())
+    }
+}
+
 impl UniformSource for Seeded {
     #[inline]
     fn next_uniform(&mut self) -> f64 {
         // The 53 high bits, as a multiple of 2^-53.
-        (self.next_word() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+        (self.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 }
 
@@ -91,7 +110,7 @@ mod tests {
     fn the_words_are_those_of_the_generator() {
         for seed in [0, 1, u64::MAX] {
             let (mut ours, mut theirs) = (Seeded::new(seed), Xoshiro256PlusPlus::seed_from_u64(seed));
-            assert!((0..100).all(|_| ours.next_word() == theirs.next_u64()));
+            assert!((0..100).all(|_| ours.next_u64() == theirs.next_u64()));
         }
     }
 

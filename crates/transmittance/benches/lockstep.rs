@@ -1,42 +1,96 @@
 //! Estimates in lanes over estimates one after the other: look-ups per second, by instruction set.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use fairflight_collision::{Albedo, DoubleParticle};
-use fairflight_media::{Constant, Vacuum};
+use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
+use fairflight_media::{
+    AnalyticCosine, Bounded, Clip, Constant, Extinction, Line, Perlin, PerlinParameters, Ray, Vacuum,
+};
 use fairflight_sources::Seeded;
-use fairflight_transmittance::{Tracking, TransmittanceEstimator, lockstep};
+use fairflight_transmittance::lockstep::{Batches, Fill, Lockstep};
+use fairflight_transmittance::{
+    Comb, CombShape, Jackknife, JitteredRatio, Offset, RayMarching, Roulette, Telescoping, Tracking,
+    UnbiasedRayMarching, Woodcock,
+};
+use glam::{DVec3, dvec3};
+use pulp::WithSimd;
 
 const LANES: usize = 16;
-const ESTIMATES: usize = 512;
-/// Look-ups of a walk.
+const ESTIMATES: usize = 256;
+/// Look-ups of a walk by ratio tracking.
 const DEPTH: f64 = 20.0;
 
-fn tracking(criterion: &mut Criterion) {
-    let field = Constant::new(0.3, DEPTH).unwrap();
-    let sampling = Constant::new(1.0, DEPTH).unwrap();
-    let model = DoubleParticle { albedo: Albedo::new(0.0).unwrap() };
-    let estimator = Tracking::new(model, Vacuum::new(DEPTH), sampling);
-    let seeds = std::array::from_fn(|lane| lane as u64);
-    let mut group = criterion.benchmark_group("ratio tracking, constant");
-    group.throughput(Throughput::Elements((DEPTH as usize * LANES * ESTIMATES) as u64));
+/// A row: one after the other, and in lanes on each instruction set that the machine has.
+fn compare<F: Extinction, E: Lockstep<F>>(criterion: &mut Criterion, name: &str, estimator: &E, field: &F) {
+    let seeds: [u64; LANES] = std::array::from_fn(|lane| lane as u64);
+    let mut estimates = vec![[0.0; ESTIMATES]; LANES];
+    let mut slices = estimates.iter_mut().map(<[f64; ESTIMATES]>::as_mut_slice);
+    let mut slices: [&mut [f64]; LANES] = std::array::from_fn(|_| slices.next().unwrap());
+    let mut in_lanes = |run: &dyn Fn(Fill<'_, '_, '_, F, E>)| {
+        let mut batches = Batches::new(&mut slices, None);
+        run(Fill { estimator, field, seeds, batches: &mut batches });
+        batches.lookups().iter().sum::<u64>()
+    };
+    let common = |fill: Fill<'_, '_, '_, F, E>| fill.with_simd(pulp::Scalar::new());
+    let lookups = in_lanes(&common);
+    let mut group = criterion.benchmark_group(name);
+    group.throughput(Throughput::Elements(lookups));
     group.bench_function("one after the other", |bencher| {
         bencher.iter(|| {
             let mut sum = 0.0;
             for seed in seeds {
                 let mut source = Seeded::new(seed);
-                sum += (0..ESTIMATES).map(|_| estimator.estimate(&field, &mut source)).sum::<f64>();
+                sum += (0..ESTIMATES).map(|_| estimator.estimate(field, &mut source)).sum::<f64>();
             }
             sum
         });
     });
-    let mut estimates = vec![[0.0; ESTIMATES]; LANES];
-    let mut slices = estimates.iter_mut().map(<[f64; ESTIMATES]>::as_mut_slice);
-    let mut slices: [&mut [f64]; LANES] = std::array::from_fn(|_| slices.next().unwrap());
-    group.bench_function("in lanes", |bencher| {
-        bencher.iter(|| lockstep::fill(&estimator, &field, seeds, &mut slices));
-    });
+    group.bench_function("in lanes, the common set", |bencher| bencher.iter(|| in_lanes(&common)));
+    #[cfg(target_arch = "x86_64")]
+    {
+        use pulp::Simd;
+        use pulp::x86::{V3, V4};
+        if let Some(v3) = V3::try_new() {
+            group.bench_function("in lanes, AVX2", |bencher| {
+                bencher.iter(|| in_lanes(&|fill| Simd::vectorize(v3, fill)));
+            });
+        }
+        if let Some(v4) = V4::try_new() {
+            group.bench_function("in lanes, AVX-512", |bencher| {
+                bencher.iter(|| in_lanes(&|fill| Simd::vectorize(v4, fill)));
+            });
+        }
+    }
     group.finish();
 }
 
-criterion_group!(benches, tracking);
+fn rows(criterion: &mut Criterion) {
+    let constant = |sigma_t| Constant::new(sigma_t, DEPTH).unwrap();
+    let albedo = Albedo::new(0.0).unwrap();
+    let ratio = Tracking::new(DoubleParticle { albedo }, Vacuum::new(DEPTH), constant(1.0));
+    compare(criterion, "ratio tracking, constant", &ratio, &constant(0.3));
+
+    let clip = AnalyticCosine::default_bounds().clip(DVec3::ZERO, DVec3::Z, None).unwrap().unwrap();
+    let cosine = Bounded::new(Ray::new(AnalyticCosine::new(1.0).unwrap(), &clip), 1.0).unwrap();
+    compare(criterion, "ratio tracking, eq. 21", &ratio, &cosine);
+    compare(criterion, "Woodcock tracking, eq. 21", &Woodcock, &cosine);
+    let model = SingleParticle { version: Version::Adaptive, albedo };
+    let single = Tracking::new(model, Vacuum::new(DEPTH), constant(1.0));
+    compare(criterion, "adaptive single particles, eq. 21", &single, &cosine);
+    compare(criterion, "jittered ratio, eq. 21", &JitteredRatio::new(0.5).unwrap(), &cosine);
+    let comb = Comb::new(20, CombShape::EndpointMatched).unwrap();
+    let marching = UnbiasedRayMarching::new(comb, Roulette::KETTUNEN);
+    compare(criterion, "unbiased ray marching, eq. 21", &marching, &cosine);
+    let telescoping = Telescoping::new(20, 0.8, CombShape::EndpointMatched).unwrap();
+    compare(criterion, "telescoping, eq. 21", &telescoping, &cosine);
+    compare(criterion, "jackknife, eq. 21", &Jackknife::new(comb), &cosine);
+    let marching = RayMarching::new(20, Offset::Jittered).unwrap();
+    compare(criterion, "ray marching, eq. 21", &marching, &cosine);
+
+    let line = Line { origin: dvec3(1.0, 2.0, 3.0), direction: dvec3(0.6, 0.48, 0.64) };
+    let noise = Perlin::new(PerlinParameters { offset: 0.3, ..PerlinParameters::default() }).unwrap();
+    let noise = Ray::new(noise, &Clip { line, length: DEPTH, entry_distance: 0.0 });
+    compare(criterion, "ratio tracking, Perlin noise of twelve octaves", &ratio, &noise);
+}
+
+criterion_group!(benches, rows);
 criterion_main!(benches);

@@ -28,7 +28,7 @@ use fairflight_sources::UniformSource;
 /// **Source.** Ours; no publication of it was found. Block-Poisson estimators (quiroz-2021) are the nearest relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JitteredRatio {
-    epsilon: Epsilon,
+    pub(crate) epsilon: Epsilon,
 }
 
 /// [`JitteredRatio`] between the bounds of each cell: the minorant is the control, and a cell is cut into
@@ -41,7 +41,7 @@ pub struct JitteredRatio {
 /// a waste here, as they are not for [`crate::ResidualCells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JitteredRatioInCells {
-    epsilon: Epsilon,
+    pub(crate) epsilon: Epsilon,
 }
 
 impl JitteredRatio {
@@ -60,7 +60,7 @@ impl JitteredRatio {
     }
 
     /// The whole profile as one cell.
-    fn cell<F: Majorant>(field: &F) -> BoundCell {
+    pub(crate) fn cell<F: Majorant>(field: &F) -> BoundCell {
         BoundCell { to: field.length(), minorant: 0.0, majorant: field.majorant() }
     }
 }

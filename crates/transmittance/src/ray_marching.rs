@@ -25,8 +25,8 @@ pub enum Offset {
 /// **Cost.** `steps` look-ups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayMarching {
-    steps: u32,
-    offset: Offset,
+    pub(crate) steps: u32,
+    pub(crate) offset: Offset,
 }
 
 /// Ray marching needs at least one step.

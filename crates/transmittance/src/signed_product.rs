@@ -67,6 +67,14 @@ impl SignedProduct {
         (SMALL..=LARGE).contains(&mantissa.abs())
     }
 
+    /// A word whose highest bit tells that [`keeps_scale`](Self::keeps_scale) is false, by differences of bits: those of lanes are cheaper to unite
+    /// than comparisons.
+    #[inline(always)]
+    pub(crate) fn beyond_scale(mantissa: f64) -> u64 {
+        let bits = mantissa.abs().to_bits();
+        bits.wrapping_sub(SMALL.to_bits()) | LARGE.to_bits().wrapping_sub(bits)
+    }
+
     /// Multiplies by a number.
     #[inline]
     pub fn multiply(&mut self, factor: f64) {
@@ -147,9 +155,21 @@ impl SignedProduct {
     #[inline]
     #[must_use]
     pub fn times_exp(&self, exponent: f64) -> f64 {
+        self.times_known_exp(exponent, exp(exponent))
+    }
+
+    /// The same where exp(`exponent`) is known.
+    #[inline]
+    pub(crate) fn times_known_exp(&self, exponent: f64, known: f64) -> f64 {
         if self.scale == 0 && exponent.abs() < 500.0 {
-            return self.mantissa * exp(exponent);
+            return self.mantissa * known;
         }
+        self.times_exp_far(exponent)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn times_exp_far(&self, exponent: f64) -> f64 {
         self.sign() * exp(self.ln_abs() + exponent)
     }
 
@@ -261,6 +281,15 @@ mod tests {
         assert_eq!(sum.value(), terms.iter().sum::<f64>());
         sum.add(&SignedProduct::of(f64::NAN));
         assert!(sum.value().is_nan());
+    }
+
+    #[test]
+    fn two_ways_to_see_the_range_of_a_mantissa() {
+        let edges = [SMALL, SMALL.next_down(), LARGE, LARGE.next_up(), 0.0, 1.0, f64::NAN, f64::INFINITY];
+        for mantissa in edges.into_iter().flat_map(|edge| [edge, -edge]) {
+            let beyond = SignedProduct::beyond_scale(mantissa) >> 63 == 1;
+            assert_eq!(beyond, !SignedProduct::keeps_scale(mantissa), "{mantissa:e}");
+        }
     }
 
     #[test]

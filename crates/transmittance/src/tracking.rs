@@ -38,8 +38,9 @@ pub struct Tracking<M, C, R> {
     model: M,
     control: C,
     sampling: R,
-    /// ∫ σ_main over the profile.
+    /// ∫ σ_main over the profile, and exp(−that).
     main_thickness: f64,
+    main_transmittance: f64,
 }
 
 impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking<M, C, R> {
@@ -47,7 +48,8 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
     /// cover the profile to be estimated and no more.
     pub fn new(model: M, control: C, sampling: R) -> Self {
         let main_thickness = control.optical_thickness(0.0, sampling.length());
-        Self { model, control, sampling, main_thickness }
+        let main_transmittance = exp(-main_thickness);
+        Self { model, control, sampling, main_thickness, main_transmittance }
     }
 
     /// The collision model.
@@ -73,7 +75,7 @@ impl<M: CollisionModel, C: OpticalThickness, R: InvertOpticalThickness> Tracking
     /// The estimate of a walk of this weight: that and the control's own transmittance.
     #[inline]
     pub(crate) fn behind_control(&self, weight: &SignedProduct) -> f64 {
-        weight.times_exp(-self.main_thickness)
+        weight.times_known_exp(-self.main_thickness, self.main_transmittance)
     }
 
     /// r = σ_diff / σ_samp at `s` (eq. 5, 6).

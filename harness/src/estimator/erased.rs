@@ -2,11 +2,13 @@
 //!
 //! A claim (a majorant, bounds in cells) is a parameter of the estimator, not knowledge of the field: with it an estimator takes any field.
 
+use fairflight_elementary::lanes::Lanes;
 use fairflight_media::{
     BoundCell, Bounded, BoundedInCells, Extinction, FieldError, InCells, Majorant, RayQuadrature, Tolerance,
     Vacuum,
 };
-use fairflight_sources::UniformSource;
+use fairflight_sources::{SeededLanes, UniformSource};
+use fairflight_transmittance::lockstep::{Batches, Lockstep};
 use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
 use std::fmt::Debug;
 
@@ -48,6 +50,17 @@ impl<F: Extinction, E: for<'a> TransmittanceEstimator<Bounded<&'a F>>> Transmitt
     }
 }
 
+impl<F: Extinction, E: for<'a> Lockstep<Bounded<&'a F>>> Lockstep<F> for ByMajorant<E> {
+    #[inline(always)]
+    fn fill(&self, field: &F, source: &mut SeededLanes, batches: &mut Batches<'_, '_>) {
+        self.estimator.fill(&self.claim.with_field(field), source, batches);
+    }
+    #[inline(always)]
+    fn admits_lanes(&self, field: &F, s: &Lanes, sigma_t: &Lanes) -> bool {
+        self.estimator.admits_lanes(&self.claim.with_field(field), s, sigma_t)
+    }
+}
+
 impl<F: Extinction + Copy, E: ClosedForm<Bounded<F>>> ClosedForm<F> for ByMajorant<E> {
     fn theory(&self, nodes: &mut RayQuadrature<F>, tau: f64, tolerance: Tolerance) -> Theory {
         let field = *nodes.field();
@@ -77,6 +90,16 @@ where
     #[inline]
     fn admits(&self, field: &F, s: f64, sigma_t: f64) -> bool {
         self.estimator.admits(&self.cells.with_field(field), s, sigma_t)
+    }
+}
+
+impl<F: Extinction, E, C: AsRef<[BoundCell]>> Lockstep<F> for ByCells<E, C>
+where
+    E: for<'a, 'b> Lockstep<InCells<&'a F, &'b [BoundCell]>>,
+{
+    #[inline(always)]
+    fn fill(&self, field: &F, source: &mut SeededLanes, batches: &mut Batches<'_, '_>) {
+        self.estimator.fill(&self.cells.with_field(field), source, batches);
     }
 }
 

@@ -23,7 +23,7 @@ impl JackknifeSpec {
 
 impl EstimatorKind for JackknifeSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let trial = profile.erased_trial(self.estimator("estimator")?);
+        let trial = profile.erased_trial_in_lanes(self.estimator("estimator")?);
         Ok(Prepared::new("jackknife", trial, "variance: quadrature over both offsets (a biased baseline)"))
     }
 

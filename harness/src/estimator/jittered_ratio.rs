@@ -65,7 +65,7 @@ impl EstimatorKind for JitteredRatioSpec {
             let estimator = self.between_cells("estimator")?;
             let cells = cells(spec, profile)?;
             let range = range(&cells);
-            let trial = profile.erased_trial(ByCells { estimator, cells });
+            let trial = profile.erased_trial_in_lanes(ByCells { estimator, cells });
             return Ok(Prepared::new("jittered_ratio", trial, variance).within(Some(range)));
         }
         let majorant = self.majorant.or_else(|| profile.declared()).ok_or_else(|| {
@@ -74,7 +74,7 @@ impl EstimatorKind for JitteredRatioSpec {
                  unbiased_ray_marching, which needs none",
             )
         })?;
-        let trial = profile.erased_trial(self.below_majorant(majorant, "estimator")?);
+        let trial = profile.erased_trial_in_lanes(self.below_majorant(majorant, "estimator")?);
         Ok(Prepared::new("jittered_ratio", trial, variance).claiming(majorant).within(Some((0.0, 1.0))))
     }
 

@@ -31,7 +31,6 @@ mod telescoping;
 mod tracking;
 mod trial;
 mod unbiased_ray_marching;
-mod watched_lanes;
 mod woodcock;
 
 pub use adaptive_ratio::AdaptiveRatioSpec;
@@ -59,9 +58,8 @@ pub use sampling::{AnySampling, SamplingSpec};
 pub use shadow::{Shadow, ShadowWorker};
 pub use single_particle::{SingleParticleSpec, VersionWord};
 pub use telescoping::TelescopingSpec;
-pub use trial::{AnyPieces, Estimator, Lawful, On, Trial};
+pub use trial::{AnyPieces, Estimator, InLanes, Lawful, On, Trial};
 pub use unbiased_ray_marching::{CombWord, RouletteSpec, UnbiasedRayMarchingSpec};
-pub use watched_lanes::{InLanes, WatchedLanes};
 pub use woodcock::WoodcockSpec;
 
 use crate::field::AnyProfile;

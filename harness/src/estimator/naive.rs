@@ -22,7 +22,7 @@ impl NaiveSpec {
 
 impl EstimatorKind for NaiveSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let trial = profile.erased_trial(self.estimator("estimator")?);
+        let trial = profile.erased_trial_in_lanes(self.estimator("estimator")?);
         Ok(Prepared::new("naive", trial, "variance: quadrature over the offset (a biased baseline)"))
     }
 

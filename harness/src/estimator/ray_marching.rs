@@ -38,7 +38,7 @@ impl RayMarchingSpec {
 
 impl EstimatorKind for RayMarchingSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let trial = profile.trial(self.estimator("estimator")?);
+        let trial = profile.trial_in_lanes(self.estimator("estimator")?);
         let (sigma_t, length) = (Interval::from(profile.field().knowledge()), profile.length());
         Ok(Prepared::new("ray_marching", trial, "variance: quadrature over the offset (a biased baseline)")
             .scoring(move |unit| scores::ray_marching(sigma_t, length, unit))

@@ -28,7 +28,7 @@ impl TelescopingSpec {
 
 impl EstimatorKind for TelescopingSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let trial = profile.erased_trial(self.estimator("estimator")?);
+        let trial = profile.erased_trial_in_lanes(self.estimator("estimator")?);
         let variance = "variance: closed form in the moments of a comb, integrated over its offset";
         let knowledge = profile.field().knowledge();
         let range = knowledge.of_telescoping(profile.length(), self.teeth, self.endpoint_matching);

@@ -1,11 +1,12 @@
 //! An estimator on a profile: the seam between the crates and the harness.
 
-use super::watched_lanes::{InLanes, WatchedLanes};
 use crate::field::{Field, KnownField};
 use fairflight_elementary::lanes::LANES;
-use fairflight_media::{Breakpoints, Counted, Domain, RayQuadrature, Tolerance, Violation, Watched};
+use fairflight_media::{
+    Breakpoints, Counted, Domain, Extinction, RayQuadrature, Tolerance, Violation, Watched,
+};
 use fairflight_sources::Seeded;
-use fairflight_transmittance::lockstep;
+use fairflight_transmittance::lockstep::{self, Lockstep};
 use fairflight_transmittance::{ClosedForm, Theory, TransmittanceEstimator};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -76,6 +77,17 @@ impl<G: Field, E: TransmittanceEstimator<G>> Domain for Lawful<G, E> {
     fn admits(&self, s: f64, sigma_t: f64) -> bool {
         sigma_t <= self.upper_bound && self.estimator.admits(&self.field, s, sigma_t)
     }
+}
+
+/// An estimator that runs in lanes on a field, also where look-ups are watched.
+pub trait InLanes<F: Extinction>:
+    Lockstep<F> + for<'a> Lockstep<lockstep::Watched<'a, F, Self>> + Sized + 'static
+{
+}
+
+impl<F: Extinction, E: Lockstep<F> + for<'a> Lockstep<lockstep::Watched<'a, F, E>> + 'static> InLanes<F>
+    for E
+{
 }
 
 /// Function that draws in lanes.
@@ -152,7 +164,7 @@ impl<F: KnownField, E: InLanes<F>> On<F, E> {
         Self: Trial + 'static,
     {
         let fill: Fill<Self> = |trial, seeds, estimates| {
-            let watched = WatchedLanes::new(&trial.field, &trial.estimator, trial.upper_bound);
+            let watched = lockstep::Watched::new(&trial.field, &trial.estimator, trial.upper_bound);
             let lookups = lockstep::fill(&trial.estimator, &watched, seeds, estimates);
             watched.all_lawful().then_some(lookups)
         };

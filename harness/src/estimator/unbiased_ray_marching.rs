@@ -227,7 +227,7 @@ impl EstimatorKind for UnbiasedRayMarchingSpec {
                 roulette
             }
         };
-        let trial = profile.erased_trial(self.with(teeth, roulette, key)?);
+        let trial = profile.erased_trial_in_lanes(self.with(teeth, roulette, key)?);
         let prepared = Prepared::new("unbiased_ray_marching", trial, variance);
         Ok(Prepared { closed_form_is_costly: self.segments > FEW_SEGMENTS, ..prepared })
     }

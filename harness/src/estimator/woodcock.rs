@@ -26,7 +26,7 @@ impl WoodcockSpec {
 
 impl EstimatorKind for WoodcockSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
-        let trial = profile.trial(self.estimator("estimator")?);
+        let trial = profile.trial_in_lanes(self.estimator("estimator")?);
         Ok(Prepared::new("woodcock", trial, "variance: closed form T(1 - T)")
             .scoring(scores::woodcock)
             .objecting(below_zero)

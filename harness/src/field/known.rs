@@ -1,5 +1,6 @@
 //! Demands of the harness on a field, and its knowledge of it.
 
+use fairflight_elementary::lanes::Lanes;
 use fairflight_media::{Breakpoints, Certificate, Extinction, Majorant, Minorant, OpticalThickness};
 use std::sync::Arc;
 
@@ -84,6 +85,10 @@ impl Extinction for ErasedField {
     #[inline]
     fn sigma_t(&self, s: f64) -> f64 {
         self.0.sigma_t(s)
+    }
+    #[inline]
+    fn sigma_t_lanes(&self, s: &Lanes) -> Lanes {
+        self.0.sigma_t_lanes(s)
     }
     #[inline]
     fn length(&self) -> f64 {

@@ -45,12 +45,22 @@ macro_rules! profiles {
             /// An estimator on this profile, compiled once for all types of fields: a look-up is then an indirect call, which
             /// `cargo bench --bench lookups` measures.
             pub fn erased_trial<E: 'static>(&self, estimator: E) -> Arc<dyn Trial>
-where
-    On<ErasedField, E>: Trial,
-{
-                let field: Arc<dyn KnownField> =
-                    match self { $(Self::$Variant(field) => Arc::new(field.clone())),+ };
-                On::trial(ErasedField(field), estimator)
+            where
+                On<ErasedField, E>: Trial,
+            {
+                On::trial(self.erased(), estimator)
+            }
+
+            /// The same of an estimator that runs in lanes: an indirect call for the look-ups of all lanes.
+            pub fn erased_trial_in_lanes<E: InLanes<ErasedField>>(&self, estimator: E) -> Arc<dyn Trial>
+            where
+                On<ErasedField, E>: Trial,
+            {
+                On::trial_in_lanes(self.erased(), estimator)
+            }
+
+            fn erased(&self) -> ErasedField {
+                ErasedField(match self { $(Self::$Variant(field) => Arc::new(field.clone())),+ })
             }
         }
     };

@@ -4,13 +4,14 @@ use fairflight_collision::CollisionModel;
 use fairflight_freeflight::lookups_of_a_walk;
 use fairflight_laws::lookups::LookupLaw;
 use fairflight_laws::scores::{self, Interval, Ranged, ratio_range};
-use fairflight_laws::transmittance::{Observed, check};
+use fairflight_laws::transmittance::{Observed, check, check_in_lanes};
 use fairflight_laws::{CheckResult, Expectation, Run, Truth, Unit};
 use fairflight_media::{
     Breakpoints, Certified, Enclosed, Extinction, InvertOpticalThickness, Majorant, Minorant,
     OpticalThickness, RayQuadrature, Tolerance,
 };
 use fairflight_stats::Scores;
+use fairflight_transmittance::lockstep::{Lockstep, Watched};
 use fairflight_transmittance::{
     ClosedForm, LineIntegral, RayMarching, Tracking, TransmittanceEstimator, Woodcock,
 };
@@ -100,23 +101,45 @@ impl<F: SpecimenField> Specimen<F> {
     where
         for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
     {
+        let expected = self.expected(estimator, also, scores, lookups);
+        CheckResult::of_evidence(&check(&self.field, estimator, &expected, expected.sufficient(run)))
+    }
+
+    /// Judges as [`Self::examine_with_lookups`] an estimator that runs in lanes: the same numbers.
+    pub(crate) fn examine_in_lanes<'f, E>(
+        &'f self,
+        estimator: &E,
+        also: &[f64],
+        scores: impl Fn(Unit) -> Scores,
+        lookups: impl FnOnce(&mut RayQuadrature<F>) -> LookupLaw,
+        run: Run,
+    ) -> CheckResult
+    where
+        E: ClosedForm<F> + Lockstep<F> + for<'a> Lockstep<Watched<'a, F, E>>,
+        for<'e> &'e E: TransmittanceEstimator<&'f F> + TransmittanceEstimator<Observed<&'f F, &'e E>>,
+    {
+        let expected = self.expected(estimator, also, scores, lookups);
+        let run = expected.sufficient(run);
+        CheckResult::of_evidence(&check_in_lanes(&self.field, estimator, &expected, run))
+    }
+
+    fn expected<E: ClosedForm<F>>(
+        &self,
+        estimator: &E,
+        also: &[f64],
+        scores: impl Fn(Unit) -> Scores,
+        lookups: impl FnOnce(&mut RayQuadrature<F>) -> LookupLaw,
+    ) -> Expectation {
         let (mut quadrature, truth) = self.prepared();
         quadrature.split_at(also);
         let lookups = lookups(&mut quadrature);
         let theory = estimator.theory(&mut quadrature, truth.optical_thickness, self.tolerance);
         let scores = scores(Unit::of(truth.optical_thickness));
-        let expected = Expectation { truth, theory, scores, lookups };
-        CheckResult::of_evidence(&check(&self.field, estimator, &expected, expected.sufficient(run)))
+        Expectation { truth, theory, scores, lookups }
     }
 
     pub(crate) fn woodcock(&self, run: Run) -> CheckResult {
-        self.examine_with_lookups(
-            &Woodcock,
-            &[],
-            scores::woodcock,
-            |quadrature| self.of_flight(quadrature),
-            run,
-        )
+        self.examine_in_lanes(&Woodcock, &[], scores::woodcock, |quadrature| self.of_flight(quadrature), run)
     }
 
     /// The look-ups of a Woodcock flight in the field's own majorant: one at each tentative collision, up to the one that is accepted.
@@ -145,7 +168,7 @@ impl<F: SpecimenField> Specimen<F> {
     pub(crate) fn ray_marching(&self, estimator: &RayMarching, run: Run) -> CheckResult {
         let range = Interval::bounds_of(&self.field);
         let scores = |unit| scores::ray_marching(range, self.field.length(), unit);
-        self.baseline(estimator, self.examine(estimator, &[], scores, LookupLaw::Fixed, run))
+        self.baseline(estimator, self.examine_in_lanes(estimator, &[], scores, |_| LookupLaw::Fixed, run))
     }
 
     /// The law of a biased `estimator`: the expectation that its theory states. Its bias is told.
@@ -183,6 +206,6 @@ impl<F: SpecimenField> Specimen<F> {
             true => LookupLaw::Poisson,
             false => LookupLaw::Moments(lookups_of_a_walk(quadrature, self.tolerance, &rates)),
         };
-        self.examine_with_lookups(tracking, &also, scores, lookups, run)
+        self.examine_in_lanes(tracking, &also, scores, lookups, run)
     }
 }

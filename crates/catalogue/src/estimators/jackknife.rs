@@ -23,7 +23,7 @@ fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>, teeth: u32) -> Check {
     let comb = Comb::new(teeth, CombShape::Uniform).expect(LAWFUL);
     add(specimen, "jackknife", Law::OwnExpectation, 250_000, move |specimen, run| {
         let jackknife = Jackknife::new(comb);
-        let result = specimen.examine(&jackknife, &[], |_| Scores::Unbounded, LookupLaw::Fixed, run);
+        let result = specimen.examine_in_lanes(&jackknife, &[], |_| Scores::Unbounded, |_| LookupLaw::Fixed, run);
         specimen.baseline(&jackknife, result)
     })
     .about([KIND.name])

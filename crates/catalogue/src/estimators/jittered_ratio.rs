@@ -28,7 +28,7 @@ fn on<F: SpecimenField + OpticalThickness>(specimen: &Celled<F>) -> Vec<Check> {
             let cell =
                 BoundCell { to: specimen.field.length(), minorant: 0.0, majorant: specimen.field.majorant() };
             let lookups = in_strata(&[cell], epsilon);
-            specimen.examine(&estimator, &[], |unit| scores::in_cells(0.0, unit), lookups, run)
+            specimen.examine_in_lanes(&estimator, &[], |unit| scores::in_cells(0.0, unit), |_| lookups, run)
         })
     };
     let in_cells = |name: &str, epsilon: f64| {
@@ -36,7 +36,7 @@ fn on<F: SpecimenField + OpticalThickness>(specimen: &Celled<F>) -> Vec<Check> {
             let estimator = JitteredRatioInCells::new(epsilon).expect(LAWFUL);
             let main = minorant_thickness(&specimen.field);
             let lookups = in_strata(specimen.field.bound_cells(), epsilon);
-            specimen.examine(&estimator, &[], |unit| scores::in_cells(main, unit), lookups, run)
+            specimen.examine_in_lanes(&estimator, &[], |unit| scores::in_cells(main, unit), |_| lookups, run)
         })
     };
     let checks = [

@@ -38,7 +38,7 @@ fn on<F: SpecimenField>(specimen: &Arc<Specimen<F>>, samples: u64, teeth: u32, r
         |(name, shape)| {
             let estimator = Telescoping::new(teeth, ratio, shape).expect(LAWFUL);
             add(specimen, name, Law::Transmittance, samples, move |specimen, run| {
-                specimen.examine(&estimator, &[], |_| Scores::Unbounded, LookupLaw::Unknown, run)
+                specimen.examine_in_lanes(&estimator, &[], |_| Scores::Unbounded, |_| LookupLaw::Unknown, run)
             })
             .about([KIND.name])
         },

@@ -2,7 +2,7 @@
 
 use crate::{ROULETTE_BELOW, SamplingExtinction, Walk};
 use fairflight_collision::SingleParticle;
-use fairflight_elementary::lanes::{LANES, Lanes};
+use fairflight_elementary::lanes::{LANES, Lanes, mask};
 use fairflight_media::lanes::{points, set_vector, vector};
 use fairflight_media::{Extinction, Line, Medium, Ray};
 use fairflight_sources::{Seeded, SeededLanes, UniformSource};
@@ -77,7 +77,7 @@ impl Group {
             self.cut(walk.max_collisions(), &mut collides, &mut events);
         }
         let r = self.ratios(medium, &collides, &sigma_samp);
-        let u = self.streams.next_uniforms_where(&collides);
+        let u = self.streams.next_uniforms_of(&collides.map(mask));
         let (energies, are_scattered) = model.collide_lanes(&r, &u);
         let mut some_are_weak = false;
         for i in 0..LANES {

@@ -1,6 +1,7 @@
 //! Parts that the sets share: exact uniform integers, and numbers of the lattice from a stratum and what lies inside of it.
 
 use crate::Seeded;
+use rand::rand_core::Rng;
 
 /// Points of the lattice: 2^53.
 const LATTICE: u64 = 1 << 53;
@@ -8,7 +9,7 @@ const LATTICE: u64 = 1 << 53;
 /// 53 random bits.
 #[inline]
 pub(super) fn bits_53(source: &mut Seeded) -> u64 {
-    source.next_word() >> 11
+    source.next_u64() >> 11
 }
 
 /// A uniform integer below `n`, exactly: multiples that do not fit whole are drawn again (lemire-2019, without his short cut).
@@ -17,7 +18,7 @@ pub(super) fn below(n: u64, source: &mut Seeded) -> u64 {
     // 2^64 mod n: that many of the least products would have one representative too many.
     let excess = n.wrapping_neg() % n;
     loop {
-        let product = u128::from(source.next_word()) * u128::from(n);
+        let product = u128::from(source.next_u64()) * u128::from(n);
         if product as u64 >= excess {
             return (product >> 64) as u64;
         }

@@ -88,14 +88,14 @@ pub struct CombLookups {
 /// What all draws of one comb on one interval share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared {
-    from: f64,
-    to: f64,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
     /// h.
-    step: f64,
+    pub(crate) step: f64,
     /// σ_t(to), for the next interval; 0 where the shape does not ask for it.
     at_end: f64,
     /// h^k/k! \[σ_t^(k−1)\] for k = 1, 2, 3.
-    corrections: [f64; 3],
+    pub(crate) corrections: [f64; 3],
 }
 
 /// Corrections that can shift X by more than this are left out where σ_t is not negative at either end.
@@ -206,10 +206,15 @@ impl Comb {
             // Rounding may put the last tooth beyond the end.
             sum += field.sigma_t((first + f64::from(tooth) * step).min(to));
         }
-        let b1 = u - 0.5;
-        let b2 = u * (u - 1.0) + 1.0 / 6.0;
-        let b3 = u * b1 * (u - 1.0);
+        let [b1, b2, b3] = Self::bernoulli(u);
         step * sum - (corrections[0] * b1 + corrections[1] * b2 + corrections[2] * b3)
+    }
+
+    /// B_1, B_2 and B_3 at u.
+    #[inline(always)]
+    pub(crate) fn bernoulli(u: f64) -> [f64; 3] {
+        let b1 = u - 0.5;
+        [b1, u * (u - 1.0) + 1.0 / 6.0, u * b1 * (u - 1.0)]
     }
 
     fn periodised<F: Extinction + ?Sized>(&self, field: &F, prepared: &Prepared, u: f64) -> f64 {

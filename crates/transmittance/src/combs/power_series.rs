@@ -7,7 +7,7 @@ use fairflight_elementary::{exp, exp2, ln, log2};
 /// 1/(N + 1) Σ_j exp(D_j) Σ_{k ≤ N} w_k m_k({D_i − D_j}_{i ≠ j}) of the deviations D_i = X_0 − X_i of N + 1 draws: s and t of s exp(t), t = 0
 /// where that is no way beyond the range of numbers.
 #[inline]
-pub(super) fn of_draws(roulette: Roulette, deviations: &[f64]) -> (f64, f64) {
+pub(crate) fn of_draws(roulette: Roulette, deviations: &[f64]) -> (f64, f64) {
     let order = deviations.len() as u32 - 1;
     // exp(X_0 − X_j) in units of the greatest, and differences in units of U, so that no product of them leaves the range.
     let greatest = deviations.iter().copied().fold(0.0, f64::max);

@@ -101,8 +101,18 @@ impl Telescoping {
     }
 
     /// p_l.
-    pub(super) fn probability(&self, level: u32) -> f64 {
+    pub(crate) fn probability(&self, level: u32) -> f64 {
         self.level_ratio * (1.0 - self.level_ratio).powi(level as i32)
+    }
+
+    /// Draws a level, by a variate for each that is reached.
+    #[inline]
+    pub(crate) fn sample_level(&self, source: &mut impl UniformSource) -> u32 {
+        let mut level = 0;
+        while source.next_uniform() >= self.level_ratio {
+            level += 1;
+        }
+        level
     }
 
     /// The combs inside that of `level` with the variate u: the mean of `each`(X) over those of level 0, and the
@@ -137,7 +147,7 @@ impl Telescoping {
 /// −2 exp(`exponent`) sinh²(`half`), 0 or infinite only where that itself is: exp(exponent) and sinh² may under- and overflow where their
 /// product does neither. With 2 sinh²(b) = exp(2|b|) (1 − exp(−2|b|))²/2 it is one exponential.
 #[inline]
-fn difference(exponent: f64, half: f64) -> f64 {
+pub(crate) fn difference(exponent: f64, half: f64) -> f64 {
     if exponent.abs() < 700.0 && half.abs() < 350.0 {
         let sine = sinh(half);
         return -2.0 * exp(exponent) * sine * sine;
@@ -152,10 +162,7 @@ fn difference(exponent: f64, half: f64) -> f64 {
 impl<F: Extinction> TransmittanceEstimator<F> for Telescoping {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let mut level = 0;
-        while source.next_uniform() >= self.level_ratio {
-            level += 1;
-        }
+        let level = self.sample_level(source);
         let prepared = self.comb.prepare(field, 0.0, field.length());
         let at = (level, source.next_uniform());
         let (base, difference) = self.nested(field, &prepared, at, 0.0, |x| exp(-x));

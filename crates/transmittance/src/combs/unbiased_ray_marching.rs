@@ -102,6 +102,12 @@ impl UnbiasedRayMarching {
         self.product(field, source, |deviations| earlier.observe(sample_variance(deviations)))
     }
 
+    /// The end of the `segment`-th of so many segments, from 1 on.
+    #[inline]
+    pub(crate) fn end_of(length: f64, segment: u32, segments: u32) -> f64 {
+        if segment == segments { length } else { length * (f64::from(segment) / f64::from(segments)) }
+    }
+
     /// The product over the segments. `observe` sees X_0 − X_i, i = 0 … N, of each segment with N > 0.
     #[inline]
     fn product<F: Extinction>(
@@ -110,14 +116,7 @@ impl UnbiasedRayMarching {
         source: &mut impl UniformSource,
         mut observe: impl FnMut(&[f64]),
     ) -> f64 {
-        let length = field.length();
-        let end = |segment: u32| {
-            if segment == self.segments {
-                length
-            } else {
-                length * (f64::from(segment) / f64::from(self.segments))
-            }
-        };
+        let end = |segment: u32| Self::end_of(field.length(), segment, self.segments);
         let (mut product, mut thickness) = (SignedProduct::ONE, 0.0);
         let mut prepared = self.comb.prepare(field, 0.0, end(1));
         for segment in 1..=self.segments {
@@ -200,11 +199,7 @@ impl UnbiasedRayMarching {
         let (mut log_square, mut error) = (0.0, 0.0);
         let mut before: Option<Prepared> = None;
         for segment in 1..=self.segments {
-            let end = if segment == self.segments {
-                field.length()
-            } else {
-                field.length() * (f64::from(segment) / f64::from(self.segments))
-            };
+            let end = Self::end_of(field.length(), segment, self.segments);
             let prepared = match &before {
                 None => self.comb.prepare(field, 0.0, end),
                 Some(before) => self.comb.prepare_next(field, before, end),

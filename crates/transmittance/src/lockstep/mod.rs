@@ -2,30 +2,51 @@
 //!
 //! A lane is a stream with its own walk; where a walk ends the next one of that stream begins. Nothing passes between lanes, and every operation is the one of the
 //! scalar estimator, so that the law of this module is equality: lane by lane the bits of the scalar estimates. Its theory is theirs.
+//!
+//! | in lanes | scalar twin |
+//! |---|---|
+//! | `tracking`, with any collision model, control and sampling extinction | [`Tracking`](crate::Tracking) |
+//! | `woodcock` | [`Woodcock`](crate::Woodcock) |
+//! | `strata` | [`JitteredRatio`](crate::JitteredRatio), [`JitteredRatioInCells`](crate::JitteredRatioInCells) |
+//! | `combs` | [`UnbiasedRayMarching`](crate::UnbiasedRayMarching), [`Telescoping`](crate::Telescoping), [`Jackknife`](crate::Jackknife) |
+//! | `ray_marching` | [`RayMarching`](crate::RayMarching) |
 
+mod batches;
+mod combs;
 mod products;
+mod ray_marching;
+mod strata;
 mod tracking;
+mod walk;
+mod watched;
+mod woodcock;
 
 pub use products::Products;
 
 use crate::TransmittanceEstimator;
-use fairflight_elementary::lanes::{LANES, Lanes};
+use fairflight_elementary::lanes::Lanes;
 use fairflight_media::Extinction;
 use fairflight_sources::SeededLanes;
+
+pub use batches::Batches;
+pub use fairflight_elementary::lanes::LANES;
+pub use watched::Watched;
 
 /// An estimator that runs in lanes.
 ///
 /// **Law.** [`fill`](Self::fill) writes into each slice, bit for bit, what [`estimate`](TransmittanceEstimator::estimate) returns in turn from
-/// [`Seeded::new`](fairflight_sources::Seeded::new) of that lane's seed.
+/// [`Seeded::new`](fairflight_sources::Seeded::new) of that lane's seed, and tells as many look-ups.
 pub trait Lockstep<F: Extinction>: TransmittanceEstimator<F> {
-    /// Fills a slice of estimates from the stream of each lane; slices may differ in length, and be empty.
+    /// Fills a slice of estimates from the stream of each lane.
     ///
     /// Has to be inlined into a function of the instruction set that it shall use: [`fill`].
-    /// Returns the look-ups of each lane.
-    fn fill(&self, field: &F, source: &mut SeededLanes, estimates: &mut [&mut [f64]; LANES]) -> [u64; LANES];
+    fn fill(&self, field: &F, source: &mut SeededLanes, batches: &mut Batches<'_, '_>);
 
     /// True where [`admits`](TransmittanceEstimator::admits) holds in all lanes; where it holds in all, it may be false.
-    fn admits_lanes(&self, field: &F, s: &Lanes, sigma_t: &Lanes) -> bool;
+    #[inline(always)]
+    fn admits_lanes(&self, field: &F, s: &Lanes, sigma_t: &Lanes) -> bool {
+        s.iter().zip(sigma_t).fold(true, |all, (&s, &sigma_t)| all & self.admits(field, s, sigma_t))
+    }
 }
 
 /// Fills a slice of estimates from the stream of each seed, by the best instruction set that the machine has: the same bits on all. Returns the look-ups of each.
@@ -35,23 +56,42 @@ pub fn fill<F: Extinction, E: Lockstep<F>>(
     seeds: [u64; LANES],
     estimates: &mut [&mut [f64]; LANES],
 ) -> [u64; LANES] {
-    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, estimates })
+    let mut batches = Batches::new(estimates, None);
+    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, batches: &mut batches });
+    batches.lookups()
+}
+
+/// Fills as [`fill`], and tells the look-ups of each estimate, in slices of the same lengths.
+pub fn fill_and_count<'a, F: Extinction, E: Lockstep<F>>(
+    estimator: &E,
+    field: &F,
+    seeds: [u64; LANES],
+    estimates: &mut [&'a mut [f64]; LANES],
+    lookups: &mut [&'a mut [f64]; LANES],
+) {
+    let batches = &mut Batches::new(estimates, Some(lookups));
+    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, batches });
 }
 
 /// Work of [`fill`], as the dispatcher takes it.
-struct Fill<'a, 'b, F, E> {
-    estimator: &'a E,
-    field: &'a F,
-    seeds: [u64; LANES],
-    estimates: &'a mut [&'b mut [f64]; LANES],
+#[derive(Debug)]
+pub struct Fill<'a, 'b, 'c, F, E> {
+    /// The estimator.
+    pub estimator: &'a E,
+    /// The field.
+    pub field: &'a F,
+    /// The seed of each lane.
+    pub seeds: [u64; LANES],
+    /// The slices that are filled.
+    pub batches: &'a mut Batches<'b, 'c>,
 }
 
-impl<F: Extinction, E: Lockstep<F>> pulp::WithSimd for Fill<'_, '_, F, E> {
-    type Output = [u64; LANES];
+impl<F: Extinction, E: Lockstep<F>> pulp::WithSimd for Fill<'_, '_, '_, F, E> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> [u64; LANES] {
-        self.estimator.fill(self.field, &mut SeededLanes::new(self.seeds), self.estimates)
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        self.estimator.fill(self.field, &mut SeededLanes::new(self.seeds), self.batches);
     }
 }
 

@@ -6,7 +6,6 @@ use crate::twins::{Evident, Rejection, Twin};
 use fairflight_collision::{Albedo, Branch, CollisionModel, DoubleParticle};
 use fairflight_laws::{Run, collision};
 use fairflight_media::{Constant, Vacuum};
-use fairflight_sources::UniformSource;
 use fairflight_transmittance::Tracking;
 
 fn right() -> DoubleParticle {
@@ -18,6 +17,8 @@ fn right() -> DoubleParticle {
 struct WrongWeight(fn(f64) -> f64);
 
 impl CollisionModel for WrongWeight {
+    const DRAWS: bool = false;
+
     fn admits(&self, r: f64) -> bool {
         right().admits(r)
     }
@@ -27,7 +28,7 @@ impl CollisionModel for WrongWeight {
     fn transmitted(&self, r: f64) -> Branch {
         right().transmitted(r)
     }
-    fn transmit(&self, r: f64, _source: &mut impl UniformSource) -> Option<f64> {
+    fn transmit_by(&self, r: f64, _u: f64) -> Option<f64> {
         Some((self.0)(r)) // right: Some(1 − r)
     }
 }

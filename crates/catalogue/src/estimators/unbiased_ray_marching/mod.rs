@@ -74,7 +74,7 @@ fn marching<F: SpecimenField>(
     let roulette = Roulette::new(stop_probability).expect(LAWFUL);
     let estimator = UnbiasedRayMarching::new(comb, roulette).in_segments(segments).expect(LAWFUL);
     add(specimen, name, Law::Transmittance, samples, move |specimen, run| {
-        specimen.examine(&estimator, &[], |_| Scores::Unbounded, lookups_of(&estimator), run)
+        specimen.examine_in_lanes(&estimator, &[], |_| Scores::Unbounded, |_| lookups_of(&estimator), run)
     })
     .about([KIND.name])
 }
@@ -112,7 +112,7 @@ fn tuned<F: SpecimenField>(
             return CheckResult::exact(false, "no estimate of a thousand had a second comb");
         };
         let estimator = estimator.with_roulette(Roulette::tuned(k2));
-        specimen.examine(&estimator, &[], |_| Scores::Unbounded, lookups_of(&estimator), run)
+        specimen.examine_in_lanes(&estimator, &[], |_| Scores::Unbounded, |_| lookups_of(&estimator), run)
     })
     .about([KIND.name])
 }
