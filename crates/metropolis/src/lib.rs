@@ -58,7 +58,7 @@ mod start;
 mod target;
 
 pub use chain::{Chain, NotFinite};
-pub use importance::{Importance, ImportanceError};
+pub use importance::{Aim, Importance, ImportanceError, ImportanceRule};
 pub use integrand::{FromBothEnds, FromCamera, Integrand};
 pub use lengths::{Lengths, LengthsError};
 pub use multiplexed::Multiplexed;

@@ -2,7 +2,7 @@
 
 mod toys;
 
-use fairflight_metropolis::{Importance, Integrand, Plan, Primary, Splats};
+use fairflight_metropolis::{Importance, ImportanceRule, Integrand, Plan, Primary, Splats};
 use fairflight_sources::{SmallStep, UniformSource, derive_seed};
 use fairflight_stats::Moments;
 use toys::{SEED, accepted, half, integrand, modes, score, verdict};
@@ -33,6 +33,7 @@ fn stages_learn_where_the_noise_is() {
         splats.push(half(u), modes(u) * noise);
     };
     let even = Importance::even([2, 1]).unwrap();
+    let rule = ImportanceRule { radius: 0, ..ImportanceRule::default() };
     let plan = Plan::new(1000, 1, 300).unwrap();
     let mut stage = |importance: &Importance, seed: u64| {
         let mut target = primary(&mut integrand).with_importance(importance);
@@ -51,7 +52,8 @@ fn stages_learn_where_the_noise_is() {
     };
     let of = |moments: &[Moments; 2], what: fn(&Moments) -> Option<f64>| moments.map(|m| what(&m).unwrap());
     let first = stage(&even, derive_seed(SEED, 1));
-    let learnt = even.learn(&of(&first, Moments::mean), &of(&first, Moments::sample_variance)).unwrap();
+    let learnt =
+        even.learn(&rule, &of(&first, Moments::mean), &of(&first, Moments::sample_variance)).unwrap();
     assert!(learnt.of([1, 0]) > 1.2 * learnt.of([0, 0]), "{learnt:?}");
     let second = stage(&learnt, derive_seed(SEED, 2));
     let relative = |moments: &Moments| moments.sample_variance().unwrap() / moments.mean().unwrap().powi(2);

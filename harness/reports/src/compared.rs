@@ -23,8 +23,8 @@ pub(super) struct Exact {
     subject: Subject,
     pub(super) images: Replicas,
     pixels: Vec<f64>,
-    /// Its own, of a pixel on average.
-    squared_error: f64,
+    /// Its own, of each pixel.
+    squared_errors: Vec<f64>,
 }
 
 impl Exact {
@@ -39,20 +39,41 @@ impl Exact {
         let images = long.measure(run.samples(samples), (seed, images), &run.media)?;
         run.advance();
         let (pixels, squared_error) = images.mean();
-        Ok(Self { subject, images, pixels, squared_error })
+        let squared_errors = vec![squared_error; pixels.len()];
+        Ok(Self { subject, images, pixels, squared_errors })
     }
 
-    /// The same image with a pixel for each `block` x `block` of its pixels, whose mean it is; its squared error by the scatter of its images.
+    /// The same image with a pixel for each `block` x `block` of its pixels, whose mean it is; its squared errors by the scatter of its images.
     pub(super) fn coarser(&self, block: u32) -> Self {
         let [columns, rows] = self.images.first().resolution().map(|side| side as u32 / block);
-        let (pixels, squared_error) = self.images.mean_of_blocks(block as usize);
+        let (pixels, squared_errors) = self.images.mean_of_blocks(block as usize);
         let subject = self.subject.with("camera.resolution", json!([columns, rows]));
-        Self { subject, images: self.images.clone(), pixels, squared_error }
+        Self { subject, images: self.images.clone(), pixels, squared_errors }
     }
 
     /// The root of its own mean squared error.
     pub(super) fn rmse(&self) -> f64 {
-        self.squared_error.sqrt()
+        average(self.squared_errors.iter().copied()).sqrt()
+    }
+
+    /// So many classes of pixels of like brightness, each as large, the darkest first.
+    pub(super) fn classes(&self, count: usize) -> Vec<Vec<usize>> {
+        let mut order: Vec<usize> = (0..self.pixels.len()).collect();
+        order.sort_by(|&a, &b| self.pixels[a].total_cmp(&self.pixels[b]));
+        order.chunks(order.len().div_ceil(count)).map(<[usize]>::to_vec).collect()
+    }
+
+    /// The mean radiance of some pixels.
+    pub(super) fn mean_of(&self, pixels: &[usize]) -> f64 {
+        average(pixels.iter().map(|&pixel| self.pixels[pixel]))
+    }
+
+    /// The root of the mean squared error of some pixels, over their mean radiance.
+    pub(super) fn relative_error(&self, entry: &Entry, pixels: &[usize]) -> Measured {
+        let (mean, own) =
+            (self.mean_of(pixels), average(pixels.iter().map(|&pixel| self.squared_errors[pixel])));
+        let squares = entry.images.squared_difference_in(pixels, &self.pixels, own);
+        squares.map(|square| square.max(0.0).sqrt() / mean)
     }
 
     /// Images of a method, of so many samples per pixel.
@@ -65,7 +86,7 @@ impl Exact {
         let images =
             self.subject.with("integrator", integrator).measure(samples, (seed, REPLICAS), &run.media)?;
         run.advance();
-        let squares = images.squared_difference(&self.pixels, self.squared_error);
+        let squares = images.squared_difference(&self.pixels, self.rmse().powi(2));
         let (seconds, rays) = (images.seconds(), f64::from(samples) * self.pixels.len() as f64);
         let [(mean, error), (exact, its_error)] = [&images, &self.images].map(Replicas::mean_of_images);
         Ok(Entry {
@@ -97,6 +118,11 @@ impl Exact {
         };
         sizes.into_iter().map(entry).collect()
     }
+}
+
+fn average(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    values.sum::<f64>() / count
 }
 
 /// One method in one scene.

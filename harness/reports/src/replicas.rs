@@ -182,15 +182,21 @@ impl Replicas {
     /// The mean over pixels of the squared difference of one image from a reference with the squared error `of_reference`, which
     /// is subtracted: right also for a biased integrator.
     pub(super) fn squared_difference(&self, reference: &[f64], of_reference: f64) -> Measured {
-        let errors: Vec<f64> = self
-            .images
-            .iter()
-            .map(|image| {
-                let squares = image.gray().zip(reference).map(|(found, exact)| (found - exact).powi(2));
-                squares.sum::<f64>() / reference.len() as f64 - of_reference
-            })
-            .collect();
-        Measured::positive(&errors)
+        self.squared_difference_in(&(0..reference.len()).collect::<Vec<_>>(), reference, of_reference)
+    }
+
+    /// The same over some pixels, whose squared error in the reference is `of_reference` on average.
+    pub(super) fn squared_difference_in(
+        &self,
+        pixels: &[usize],
+        reference: &[f64],
+        of_reference: f64,
+    ) -> Measured {
+        let error = |image: &Picture| {
+            let squares = pixels.iter().map(|&pixel| (image.means()[pixel][0] - reference[pixel]).powi(2));
+            squares.sum::<f64>() / pixels.len() as f64 - of_reference
+        };
+        Measured::positive(&self.images.iter().map(error).collect::<Vec<_>>())
     }
 
     /// A function of the squared bias and of the variance of one image, means over pixels, against images of another integrator without a bias. The
@@ -287,13 +293,13 @@ impl Replicas {
         self.images.iter().map(|image| image.blocks(side)).collect()
     }
 
-    /// The mean of all images in blocks of `side` x `side` pixels, gray, and its squared error, from the scatter of the images.
-    pub(super) fn mean_of_blocks(&self, side: usize) -> (Vec<f64>, f64) {
+    /// The mean of all images in blocks of `side` x `side` pixels, gray, and its squared errors, from the scatter of the images.
+    pub(super) fn mean_of_blocks(&self, side: usize) -> (Vec<f64>, Vec<f64>) {
         let blocks = self.blocks(side);
         let count = blocks[0].len();
         let all = (0..count).map(|k| mean_and_error(&blocks.iter().map(|of| of[k]).collect::<Vec<_>>()));
         let (means, errors): (Vec<f64>, Vec<f64>) = all.unzip();
-        (means, errors.iter().map(|error| error * error).sum::<f64>() / count as f64)
+        (means, errors.iter().map(|error| error * error).collect())
     }
 
     /// Steps of chains by their kind: the mean probability to accept one, and their part in all that were accepted; empty without chains.

@@ -1,6 +1,6 @@
 //! The beam radiance estimate: its parameters checked, and the integrator of one tile.
 
-use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
+use super::integrator::{AnyIntegrator, Counts, SceneVolume, by_points};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;
@@ -24,7 +24,7 @@ pub struct BeamRadiancePlan {
 
 impl BeamRadiancePlan {
     pub(super) fn build(spec: &BeamRadianceSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
-        let BeamRadianceSpec { photons, radius, surfaces, max_vertices, ref transport } = *spec;
+        let BeamRadianceSpec { photons, radius, surfaces, max_vertices, ref transport, .. } = *spec;
         let transport = TransportPlan::build(transport, scene)?;
         Ok(Self { transport, photons, radius, surfaces, max_vertices })
     }
@@ -41,6 +41,6 @@ impl BeamRadiancePlan {
         let beam = BeamRadiance::new(world, (map, self.radius), walk.walk(), shadow, *heuristic)
             .map_err(|error| Failure::refused(format!("integrator.radius: {error}")))?;
         let beam = beam.with_surfaces(self.surfaces).with_max_vertices(self.max_vertices);
-        Ok(counting(beam, |beam| Counts::cut(beam.truncated())))
+        Ok(by_points(beam, |beam| Counts::cut(beam.truncated())))
     }
 }

@@ -59,6 +59,15 @@ pub trait TileIntegrator<C> {
     /// Draws one estimate \[radiance\] for a ray whose direction has unit length.
     fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C;
 
+    /// The same with the variates of a point.
+    ///
+    /// # Panics
+    /// If the integrator takes no points, to which the plan gives none.
+    fn radiance_by_point(&mut self, line: &Line, source: &mut dyn UniformSource) -> C {
+        let _ = (line, source);
+        unreachable!("it takes no points")
+    }
+
     /// Draws one estimate for each of `lines`, of pixels that use each other's paths; unless the integrator says otherwise, of each by itself.
     fn radiances(&mut self, lines: &[Line], radiances: &mut [C], source: &mut Seeded) {
         for (line, radiance) in lines.iter().zip(radiances) {
@@ -141,6 +150,21 @@ struct Compiled<I> {
     counts: fn(&I) -> Counts,
 }
 
+/// The same of one that takes points: one more copy of it is compiled for them.
+struct ByPoints<I>(Compiled<I>);
+
+impl<C: Spectrum, I: Integrator<C>> TileIntegrator<C> for ByPoints<I> {
+    fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C {
+        self.0.radiance(line, source)
+    }
+    fn radiance_by_point(&mut self, line: &Line, mut source: &mut dyn UniformSource) -> C {
+        self.0.integrator.radiance(line, &mut source)
+    }
+    fn counts(&self) -> Counts {
+        TileIntegrator::<C>::counts(&self.0)
+    }
+}
+
 impl<C: Spectrum, I: Integrator<C>> TileIntegrator<C> for Compiled<I> {
     fn radiance(&mut self, line: &Line, source: &mut Seeded) -> C {
         // In registers while it changes.
@@ -186,6 +210,14 @@ pub(super) fn counting<'s, C: Spectrum, I: Integrator<C> + 's>(
     Box::new(Compiled { integrator, counts })
 }
 
+/// An integrator that takes points, with its counts.
+pub(super) fn by_points<'s, C: Spectrum, I: Integrator<C> + 's>(
+    integrator: I,
+    counts: fn(&I) -> Counts,
+) -> AnyIntegrator<'s, C> {
+    Box::new(ByPoints(Compiled { integrator, counts }))
+}
+
 /// An integrator that counts nothing.
 pub(super) fn plain<'s, C: Spectrum>(integrator: impl Integrator<C> + 's) -> AnyIntegrator<'s, C> {
     counting(integrator, |_| Counts::default())
@@ -216,7 +248,7 @@ impl IntegratorPlan {
     fn of(spec: &IntegratorSpec, scene: &InScene<'_>) -> Result<Self, Failure> {
         let (medium, bounds) = (scene.medium, scene.bounds);
         match spec {
-            IntegratorSpec::Transmittance(TransmittanceSpec { estimator }) => {
+            IntegratorSpec::Transmittance(TransmittanceSpec { estimator, .. }) => {
                 estimator.kind().for_all_rays(scene, "integrator.estimator").map(Self::Transmittance)
             }
             IntegratorSpec::ParticleTracer(tracer) => {
@@ -315,11 +347,13 @@ impl IntegratorPlan {
                 Self::Bidirectional(plan) => plan.on(volume, stage),
                 Self::BeamRadiance(plan) => return plan.on(volume, stage),
                 Self::Metropolis(plan) => plan.on(volume, stage),
-                _ => plain(Attenuation::new(volume, lights, Regular)),
+                _ => by_points(Attenuation::new(volume, lights, Regular), |_| Counts::default()),
             });
         }
         Ok(match self {
-            Self::Transmittance(shadow) => plain(Attenuation::new(volume, lights, shadow.worker(unlawful))),
+            Self::Transmittance(shadow) => {
+                by_points(Attenuation::new(volume, lights, shadow.worker(unlawful)), |_| Counts::default())
+            }
             Self::ParticleTracer(walk) => Box::new(InLanes(ParticleTracer::new(volume, lights, walk.walk()))),
             Self::PhotonTracer(walk) => {
                 plain(Attenuation::new(volume, lights, Ratio(*walk.walk().sampling())))

@@ -9,8 +9,8 @@ use crate::estimator::InScene;
 use crate::spec::{Over, StagesSpec, StepsSpec};
 use fairflight_media::{Line, LineThickness};
 use fairflight_metropolis::{
-    Experience, FromBothEnds, FromCamera, Importance, Integrand, Kernels, Lengths, Multiplexed, Plan,
-    Primary, Target,
+    Experience, FromBothEnds, FromCamera, Importance, ImportanceRule, Integrand, Kernels, Lengths,
+    Multiplexed, Plan, Primary, Target,
 };
 use fairflight_paths::transport::{Types, World};
 use fairflight_paths::{Integrator, PathTracer};
@@ -66,8 +66,8 @@ pub(crate) enum ChainStarts {
 /// Learning of later replicas from earlier ones: each stage has starts of its own, and no replica learns from itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Learning {
-    /// Stages of an importance of pixels, and its floor.
-    pub importance: Option<(u32, f64)>,
+    /// Stages of an importance of pixels, and the rule by which it is learnt.
+    pub importance: Option<(u32, ImportanceRule)>,
     /// True if sizes of small steps are learnt.
     pub adapts: bool,
 }
@@ -75,7 +75,7 @@ pub(crate) struct Learning {
 impl Learning {
     /// The learning of a spec.
     pub(super) fn of(importance: Option<&StagesSpec>, adapts: bool) -> Self {
-        Self { importance: importance.map(|spec| (spec.stages, spec.floor)), adapts }
+        Self { importance: importance.map(StagesSpec::rule), adapts }
     }
 
     /// Stages that share the replicas; sizes of steps are learnt in two at least.

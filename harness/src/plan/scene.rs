@@ -1,7 +1,7 @@
 //! A scene whose parts fit together.
 
 use super::rays::rays_of;
-use super::{AnyPhase, IntegratorPlan, surfaces};
+use super::{AnyPhase, IntegratorPlan, PixelPoints, surfaces};
 use crate::Failure;
 use crate::estimator::InScene;
 use crate::field::{AnyMedium, MediumLibrary};
@@ -28,6 +28,8 @@ pub struct ScenePlan {
     pub spectra: Spectra,
     /// The estimator of a pixel.
     pub integrator: IntegratorPlan,
+    /// Point sets of each pixel; `None` where samples are independent.
+    pub points: Option<PixelPoints>,
     /// Estimates per pixel.
     pub samples_per_pixel: u32,
     /// The seed of all variates.
@@ -108,6 +110,7 @@ impl ScenePlan {
             phase,
             spectra,
             integrator,
+            points: PixelPoints::of(spec)?,
             samples_per_pixel: spec.samples_per_pixel,
             seed: spec.seed,
         })

@@ -1,6 +1,6 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
-use super::integrator::{AnyIntegrator, SceneVolume, admits_majorant, plain};
+use super::integrator::{AnyIntegrator, Counts, SceneVolume, admits_majorant, by_points};
 use super::transport::Stage;
 use crate::Failure;
 use crate::estimator::{
@@ -115,15 +115,17 @@ impl SingleScatteringPlan {
                 AnyPrimary::Single(Tracked::new(model, sigma_samp, explorers(control)?).map_err(refuse)?)
             }
             PrimaryPlan::Line { majorant, line, starts } => {
-                return Ok(plain(LineSampled::new(volume, lights, (line, starts, majorant), shadow)));
+                let line = LineSampled::new(volume, lights, (line, starts, majorant), shadow);
+                return Ok(by_points(line, |_| Counts::default()));
             }
             PrimaryPlan::Marching { steps, offset, shadow } => {
-                return Ok(plain(Marching::new(volume, lights, (steps, offset), shadow)));
+                let marching = Marching::new(volume, lights, (steps, offset), shadow);
+                return Ok(by_points(marching, |_| Counts::default()));
             }
         };
         let asked = (self.sampling, self.samples);
         let integrator = SingleScattering::new(volume, lights, asked, primary, shadow, self.explorers()?);
-        integrator.map(plain).map_err(|error| {
+        integrator.map(|it| by_points(it, |_| Counts::default())).map_err(|error| {
             let key = if error == SamplingError::NoSamples { "samples_per_ray" } else { "sampling" };
             Failure::refused(format!("integrator.{key}: {error}"))
         })

@@ -160,7 +160,10 @@ impl<'a, C: Spectrum> Draw<'a, C> {
 
     fn add(self, scene: &dyn Scene<C>, canvas: &mut Canvas<C>, samples: u32) -> Result<(), Failure> {
         let integrator = &self.plan.integrator;
-        debug_assert!(samples == 1 || !integrator.draws_in_batches(), "a batch is for one sample per pixel");
+        debug_assert!(
+            samples == self.plan.pass_samples() || !integrator.draws_in_batches(),
+            "a batch is for one sample per pixel, or one point set"
+        );
         let number = canvas.pass_means.len();
         if number == 0 {
             // Whether they fit together is known before anything is drawn.
@@ -180,10 +183,11 @@ impl<'a, C: Spectrum> Draw<'a, C> {
         let mut light = integrator.splats().then(|| LightImage::new(camera.resolution()));
         let (splats, groups) = (light.is_some(), integrator.groups());
         let draw_tile = |tile: &mut Tile<C>| {
-            scene.integrate(&batch, &mut |integrator| match &groups {
-                Some(groups) => tile.share_samples(integrator, camera, range, groups),
-                None if splats => tile.hold_samples(integrator, camera, range),
-                None => tile.add_samples(integrator, camera, range),
+            scene.integrate(&batch, &mut |integrator| match (&self.plan.points, &groups) {
+                (Some(points), _) => tile.add_replica(integrator, camera, range, points),
+                (_, Some(groups)) => tile.share_samples(integrator, camera, range, groups),
+                _ if splats => tile.hold_samples(integrator, camera, range),
+                _ => tile.add_samples(integrator, camera, range),
             })
         };
         let mut sum = 0.0;

@@ -45,22 +45,23 @@ impl<'p> Painting<'p> {
         self.samples >= self.plan.samples_per_pixel
     }
 
-    /// Adds a pass of one sample per pixel. `advance` is told how many samples were added.
+    /// Adds a pass of one sample per pixel, or of one point set. `advance` is told how many samples were added.
     ///
     /// # Errors
     /// If a look-up is not lawful, or a sample not finite. The painting is then of no use.
     pub fn add_pass(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
-        self.add(1, (advance, &|| false))
+        self.add(self.plan.pass_samples(), (advance, &|| false))
     }
 
-    /// Adds all samples that are missing: in one pass, unless the integrator has a batch for each.
+    /// Adds all samples that are missing: in one pass, unless the integrator has a batch for each, or pixels have point sets.
     ///
     /// # Errors
     /// The errors of [`add_pass`](Self::add_pass).
     pub fn complete(&mut self, advance: &(dyn Fn(u64) + Sync)) -> Result<(), Failure> {
-        let batches = self.plan.integrator.draws_in_batches();
+        let by_pass = self.plan.integrator.draws_in_batches() || self.plan.points.is_some();
         while !self.is_complete() {
-            let samples = if batches { 1 } else { self.plan.samples_per_pixel - self.samples };
+            let samples =
+                if by_pass { self.plan.pass_samples() } else { self.plan.samples_per_pixel - self.samples };
             self.add(samples, (advance, &|| false))?;
         }
         Ok(())

@@ -61,6 +61,7 @@ pub(super) fn reduced(spec: &SceneSpec, side: u32, samples: u32) -> Result<Scene
     if let Some(walk) = reduced.integrator.walk_mut() {
         walk.allow_supercritical = true;
     }
+    reduced.integrator.without_points();
     Ok(reduced)
 }
 

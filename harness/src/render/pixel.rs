@@ -21,11 +21,18 @@ impl<C: Spectrum> Pixel<C> {
 
     #[inline]
     pub(super) fn push(&mut self, sample: C) {
+        self.push_mean(sample, 1);
+    }
+
+    /// Adds an estimate that is a mean over so many samples, as many as all others: n Σ (x − mean)²/(K − 1) over K of them is the variance of one sample
+    /// that independent ones of the same error would have.
+    #[inline]
+    pub(super) fn push_mean(&mut self, estimate: C, samples: u32) {
         self.count += 1;
-        let before = sample + self.mean * -1.0;
+        let before = estimate + self.mean * -1.0;
         self.mean += before * (1.0 / self.count as f64);
-        let after = sample + self.mean * -1.0;
-        self.squared += before * after;
+        let after = estimate + self.mean * -1.0;
+        self.squared += before * after * f64::from(samples);
         self.squared_gray += before.mean() * after.mean();
     }
 
@@ -82,5 +89,13 @@ mod tests {
         assert!((pixel.variance().unwrap() - dvec3(4.0, 0.0, 1.0)).length() < 1e-15);
         // Of 1, 2, 2.
         assert!((pixel.mean_variance_gray().unwrap() - 1.0 / 9.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn means_over_points_are_as_independent_samples_of_their_error() {
+        let mut pixel = Pixel::new();
+        [1.0, 3.0].into_iter().for_each(|mean| pixel.push_mean(mean, 4));
+        // The mean of all varies by 2/2: one of eight samples by 8.
+        assert_eq!((pixel.mean(), pixel.mean_variance_gray(), pixel.variance()), (2.0, Some(1.0), Some(8.0)));
     }
 }

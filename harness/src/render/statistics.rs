@@ -285,6 +285,9 @@ impl Moments {
             light_path_seconds: self.cost.light_path_seconds,
         });
         let shared = plan.integrator.correlation().map_or_else(String::new, |what| format!("; {what}"));
+        let points = plan.points.map_or_else(String::new, |points| {
+            format!("; variance and errors are those of means over {} points of a set", points.each)
+        });
         Statistics {
             image: Size { width, height, samples_per_pixel: self.samples, channels: self.channels },
             radiance: Radiance {
@@ -312,7 +315,7 @@ impl Moments {
                 .then(|| self.cost.unseen_power / self.cost.light_paths as f64),
             chains: self.chains.as_ref().map(Chains::told),
             method: format!(
-                "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}{shared}",
+                "{method}; seconds by the clock on the wall; look-ups are counted while it runs{}{shared}{points}",
                 prepared(&plan.integrator)
             ),
             warnings,

@@ -3,11 +3,11 @@
 use super::light_image::LightImage;
 use super::pixel::Pixel;
 use crate::Failure;
-use crate::plan::{Counts, Splatted, Tally, TileIntegrator};
+use crate::plan::{Counts, PixelPoints, Splatted, Tally, TileIntegrator};
 use crate::spec::ReuseSpec;
 use fairflight_paths::extend::PixelGroups;
 use fairflight_scene::{Camera, Spectrum};
-use fairflight_sources::{Seeded, UniformSource};
+use fairflight_sources::{Seeded, UniformSource, derive_seed};
 use std::ops::ControlFlow;
 
 /// Columns and rows of a tile.
@@ -99,6 +99,32 @@ impl<C: Spectrum> Tile<C> {
         range: (u32, u32, u64),
     ) -> Result<Added<C>, Failure> {
         self.draw(integrator, camera, range, |pixel, _, radiance| pixel.push(radiance))
+    }
+
+    /// Adds a replica to each pixel, which has `drawn` samples: the mean over the points of a set of its own.
+    ///
+    /// # Errors
+    /// If a sample is not finite.
+    pub(super) fn add_replica(
+        &mut self,
+        integrator: &mut dyn TileIntegrator<C>,
+        camera: &Camera,
+        (drawn, samples, seed): (u32, u32, u64),
+        points: &PixelPoints,
+    ) -> Result<Added<C>, Failure> {
+        let mut sum = 0.0;
+        for (position, pixel) in self.area.positions().zip(&mut self.pixels) {
+            let index = u64::from(position[1]) * u64::from(camera.resolution()[0]) + u64::from(position[0]);
+            let set = derive_seed(derive_seed(seed, index), u64::from(drawn / samples));
+            let mean = points.mean(set, |point, source| {
+                let within = [source.next_uniform(), source.next_uniform()];
+                let radiance = integrator.radiance_by_point(&camera.ray(position, within), source);
+                check(radiance, position, (drawn + point, seed), integrator).map(|()| radiance)
+            })?;
+            sum += mean.mean() * f64::from(samples);
+            pixel.push_mean(mean, samples);
+        }
+        Ok(Added { sum, counts: integrator.counts(), splatted: integrator.splatted() })
     }
 
     /// Draws one sample of each pixel, which wait for what other pixels' light paths add to them.

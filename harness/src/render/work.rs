@@ -79,9 +79,10 @@ pub(super) fn check(
     let [columns, rows] = plan.camera.resolution();
     let samples = match length {
         Length::Whole => spec.samples_per_pixel,
-        Length::Limited => {
-            plan.integrator.replicas().map_or(1, |count| spec.samples_per_pixel.div_ceil(count))
-        }
+        Length::Limited => plan
+            .integrator
+            .replicas()
+            .map_or(plan.pass_samples(), |count| spec.samples_per_pixel.div_ceil(count)),
     };
     let pixels = f64::from(columns) * f64::from(rows);
     let paths = pixels * f64::from(samples);
@@ -99,7 +100,7 @@ pub(super) fn check(
 
     let chords = Chords::of(plan)?;
     let (key, lookups) = match &spec.integrator {
-        IntegratorSpec::Transmittance(TransmittanceSpec { estimator }) => {
+        IntegratorSpec::Transmittance(TransmittanceSpec { estimator, .. }) => {
             ("integrator.estimator", paths * chords.estimate(estimator, 1.0))
         }
         IntegratorSpec::SingleScattering(single) => {

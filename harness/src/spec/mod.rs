@@ -16,8 +16,8 @@ pub use scene::{
     DirectionalSpec, EnergyRedistributionSpec, EnvironmentMapSpec, EnvironmentSpec, ExtensionSpec,
     GuidedSpec, IntegratorKind, IntegratorSpec, LightSpec, LineSplittingSpec, MaterialSpec, MetropolisSpec,
     MutationKind, Over, Particles, PathTracerSpec, PhaseKind, PhaseSpec, PointSpec, RectangleSpec,
-    ResampledSpec, ReuseSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind, ShapeSpec,
-    SingleScatteringSpec, SphereSpec, StagesSpec, StepsSpec, Strategy, SurfaceSpec, ThicknessSpec,
+    ResampledSpec, ReuseSpec, Sampler, SamplerSpec, SamplingFieldSpec, SceneOverrides, SceneSpec, ShapeKind,
+    ShapeSpec, SingleScatteringSpec, SphereSpec, StagesSpec, StepsSpec, Strategy, SurfaceSpec, ThicknessSpec,
     TracerSpec, TransmittanceSpec, TransportSpec, VolumeSpec, VplSpec, WalkSpec,
 };
 pub use sweep::{Request, Sweep};

@@ -19,6 +19,7 @@ mod refusals;
 mod render;
 mod render_refusals;
 mod report;
+mod sampler;
 mod scene_estimators;
 mod shell;
 mod surfaces;

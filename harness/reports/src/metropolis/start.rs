@@ -25,7 +25,7 @@ const CHAINS: [u64; 3] = [1, 10, 100];
 /// Parts of a measurement, which threads share.
 const PARTS: usize = 32;
 /// Replicas of chains of one step; of longer ones fewer from as many steps in all as [`LONG`] have.
-const REPLICAS: u64 = 1 << 17;
+const REPLICAS: u64 = 1 << 16;
 const LONG: u64 = 128;
 
 pub(super) const STEPS: u64 =

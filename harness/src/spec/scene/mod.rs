@@ -12,9 +12,9 @@ pub use colour::ColourSpec;
 pub use integrator::{
     Adaptation, BeamRadianceSpec, BidirectionalSpec, ClampSpec, Collisions, ComponentSpec,
     EnergyRedistributionSpec, ExtensionSpec, GuidedSpec, IntegratorKind, IntegratorSpec, LineSplittingSpec,
-    MetropolisSpec, MutationKind, Over, Particles, PathTracerSpec, ResampledSpec, ReuseSpec,
-    SamplingFieldSpec, SingleScatteringSpec, StagesSpec, StepsSpec, Strategy, ThicknessSpec, TracerSpec,
-    TransmittanceSpec, TransportSpec, VplSpec, WalkSpec,
+    MetropolisSpec, MutationKind, Over, Particles, PathTracerSpec, ResampledSpec, ReuseSpec, Sampler,
+    SamplerSpec, SamplingFieldSpec, SingleScatteringSpec, StagesSpec, StepsSpec, Strategy, ThicknessSpec,
+    TracerSpec, TransmittanceSpec, TransportSpec, VplSpec, WalkSpec,
 };
 pub use light::{DirectionalSpec, EnvironmentMapSpec, EnvironmentSpec, LightSpec, PointSpec};
 pub use phase::{PhaseKind, PhaseSpec};
@@ -101,7 +101,9 @@ impl SceneSpec {
         let surfaces = root.optional("surfaces").map_or(Ok(Vec::new()), |node| node.items())?;
         let surfaces = surfaces.iter().map(|node| SurfaceSpec::read(node, allow_gain));
         let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
-        let integrator = IntegratorSpec::read(&root.required("integrator")?)?;
+        let integrator = root.required("integrator")?;
+        integrator::refuse_for_walks(&integrator)?;
+        let integrator = IntegratorSpec::read(&integrator)?;
         let or_override = |key, least, most, instead: Option<u64>| match (root.optional(key), instead) {
             (Some(node), instead) => node.integer(least, most).map(|given| instead.unwrap_or(given)),
             (None, Some(instead)) => Ok(instead),

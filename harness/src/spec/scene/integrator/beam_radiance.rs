@@ -1,9 +1,9 @@
 //! The beam radiance estimate.
 
-use super::IntegratorKind;
 use super::path_tracer::MOST_VERTICES;
 use super::transport::TransportSpec;
 use super::vpl::MOST_LIGHT_PATHS;
+use super::{IntegratorKind, SamplerSpec};
 use crate::reader::kind::Among;
 use crate::reader::rule::{Positive, Whole};
 use crate::{kind, words};
@@ -20,7 +20,7 @@ words! {
 kind! {
     /// Photons beside the whole camera ray (jarosz-2008), among surfaces: biased, since light is smeared out over the radius.
     BeamRadianceSpec = "beam_radiance" {
-        /// Light paths that leave the photons of a map, one map for each sample of a pixel.
+        /// Light paths that leave the photons of a map, one map for each sample of a pixel, or for each of its point sets.
         photons: u32 as Whole<1, MOST_LIGHT_PATHS>,
         /// The distance from the ray within which photons count \[length\].
         radius: f64 as Positive,
@@ -30,10 +30,16 @@ kind! {
         max_vertices: u32 as Whole<1, MOST_VERTICES> = MOST_VERTICES as u32,
         /// The flights of photons, the transmittance between them and the camera, and the paths from surfaces.
         transport: TransportSpec as Among,
+        /// Variates of the samples of a pixel.
+        points: SamplerSpec as Among,
     }
+    check |spec, object| spec.points.check(object)
 }
 
 impl IntegratorKind for BeamRadianceSpec {
+    fn sampler(&self) -> Option<&SamplerSpec> {
+        Some(&self.points)
+    }
     fn transport(&self) -> Option<&TransportSpec> {
         Some(&self.transport)
     }

@@ -8,7 +8,7 @@ use crate::reader::kind::Among;
 use crate::reader::rule::{Maybe, Nullable, Positive, Rule, Whole};
 use crate::reader::{Node, Object};
 use crate::{Failure, keys, kind, words};
-use fairflight_metropolis::Importance;
+use fairflight_metropolis::{Aim, ImportanceRule};
 use fairflight_sources::{Layout, SmallStep};
 use serde_json::{Map, Value, json};
 
@@ -108,7 +108,28 @@ keys! {
         /// Number of stages, which share the replicas evenly: at least two for each.
         stages: u32 as Whole<2, 100> = 2,
         /// The least importance of a pixel, in units of the mean importance.
-        floor: f64 as Positive = Importance::FLOOR,
+        floor: f64 as Positive = ImportanceRule::default().floor,
+        /// Pixels on each side that means and variances are averaged over before a stage learns from them.
+        radius: u32 as Whole<0, 100> = ImportanceRule::default().radius,
+        /// What visits of the pixels are spread for: the squared error of the image, that of each pixel relative to its mean, or as many visits to each.
+        aim: Aim as AimWord = Aim::SquaredError,
+    }
+}
+
+words! {
+    /// Aim of the spread of a chain's visits.
+    pub(super) AimWord for Aim {
+        "squared_error" => Aim::SquaredError,
+        "relative_error" => Aim::RelativeError,
+        "even_visits" => Aim::EvenVisits,
+    }
+}
+
+impl StagesSpec {
+    /// Number of stages, and the rule by which they learn.
+    pub(crate) fn rule(&self) -> (u32, ImportanceRule) {
+        let Self { stages, floor, radius, aim } = *self;
+        (stages, ImportanceRule { aim, floor, radius })
     }
 }
 

@@ -7,6 +7,7 @@ mod line_splitting;
 mod metropolis;
 mod particle_tracer;
 mod path_tracer;
+mod sampler;
 mod single_scattering;
 mod transmittance;
 mod transport;
@@ -22,6 +23,8 @@ pub use metropolis::{
 };
 pub use particle_tracer::{Particles, TracerSpec};
 pub use path_tracer::PathTracerSpec;
+pub(super) use sampler::refuse_for_walks;
+pub use sampler::{Sampler, SamplerSpec};
 pub use single_scattering::{SingleScatteringSpec, Strategy};
 pub use transmittance::TransmittanceSpec;
 pub use transport::TransportSpec;
@@ -56,6 +59,11 @@ pub trait IntegratorKind {
     /// Walks of the integrator, if it has some.
     fn walk(&self) -> Option<&WalkSpec> {
         self.transport().map(|transport| &transport.walk)
+    }
+
+    /// Variates of the samples of a pixel, of an integrator that takes points.
+    fn sampler(&self) -> Option<&SamplerSpec> {
+        None
     }
 
     /// The part that is biased by design, if any.
@@ -93,5 +101,16 @@ impl IntegratorSpec {
             Self::EnergyRedistribution(spec) => Some(&mut spec.steps.transport.walk),
             Self::Transmittance(_) | Self::SingleScattering(_) => None,
         }
+    }
+
+    /// Draws independent samples, if it takes others.
+    pub fn without_points(&mut self) {
+        let points = match self {
+            Self::Transmittance(spec) => &mut spec.points,
+            Self::SingleScattering(spec) => &mut spec.points,
+            Self::BeamRadiance(spec) => &mut spec.points,
+            _ => return,
+        };
+        *points = SamplerSpec { sampler: Sampler::Independent, replicas: None };
     }
 }

@@ -1,8 +1,9 @@
 //! Single scattering.
 
 use super::line_splitting::StartsWord;
-use super::{IntegratorKind, MOST};
+use super::{IntegratorKind, MOST, SamplerSpec};
 use crate::estimator::{EstimatorSpec, ForAllRays};
+use crate::reader::kind::Among;
 use crate::reader::rule::{Maybe, Whole};
 use crate::{kind, words};
 use fairflight_paths::Heuristic;
@@ -65,10 +66,16 @@ kind! {
         shadow: Option<EstimatorSpec> as Maybe<ForAllRays> = None,
         /// Neighbouring pixels that share one fitted control.
         shared_explorers: u32 as Whole<1, MOST> = 1,
+        /// Variates of the samples of a pixel.
+        points: SamplerSpec as Among,
     }
+    check |spec, object| spec.points.check(object)
 }
 
 impl IntegratorKind for SingleScatteringSpec {
+    fn sampler(&self) -> Option<&SamplerSpec> {
+        Some(&self.points)
+    }
     fn bias(&self) -> Option<&'static str> {
         let is_biased = EstimatorSpec::is_biased_baseline;
         super::of_a_baseline(is_biased(&self.estimator) || self.shadow.as_ref().is_some_and(is_biased))
