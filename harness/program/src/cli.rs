@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::porting::{CheckPortArguments, VectorsArguments};
 use clap::{Parser, Subcommand};
 use fairflight_harness::cli::{
     AdviseArguments, EstimateArguments, InfoArguments, RenderArguments, VerifyArguments,
@@ -40,6 +41,10 @@ pub(crate) enum Command {
     Render(RenderArguments),
     /// Check all laws over all estimators, media and hard cases: a table; exit code 1 if one fails
     Verify(VerifyArguments),
+    /// Write test vectors for ports to other languages: what an estimator makes of given variates, with tolerances
+    Vectors(VectorsArguments),
+    /// Hold a port to the test vectors: which cases fail, in which layer, and what mistake it looks like
+    CheckPort(CheckPortArguments),
     /// List reports, and all kinds of profiles, media, estimators, integrators and parts of scenes with their keys
     List,
     /// Say what an OpenVDB file holds: grids, boxes, values, mean free paths, and a scene that can be pasted

@@ -4,6 +4,7 @@
 
 mod cli;
 mod list;
+mod porting;
 mod shell;
 
 use clap::Parser;
@@ -36,6 +37,8 @@ pub fn run(
         Some(Command::Render(arguments)) => render::run(&arguments, &environment, stdin, stderr),
         Some(Command::Verify(arguments)) => verify::run(&arguments, &environment, stdout),
         Some(Command::Info(arguments)) => info::run(&arguments, stdout),
+        Some(Command::Vectors(arguments)) => porting::vectors(&arguments, stdout),
+        Some(Command::CheckPort(arguments)) => porting::check_port(&arguments, stdout),
         Some(Command::List) => list::list(stdout),
         Some(Command::Schema(arguments)) => list::print_schema(arguments, stdout),
         Some(Command::Completions(arguments)) => shell::completions(arguments, stdout),

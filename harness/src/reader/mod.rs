@@ -4,7 +4,7 @@ pub mod json;
 pub mod kind;
 mod node;
 pub mod rule;
-pub(crate) mod similar;
+pub mod similar;
 
 pub use kind::{Kind, Listed};
 pub use node::{Node, Object};

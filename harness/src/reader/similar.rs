@@ -19,7 +19,8 @@ const KNOWN_ELSEWHERE: [(&str, &str); 14] = [
 ];
 
 /// " (did you mean …?)" where one of `names` is as good as the word, or another name of it is known; else nothing.
-pub(crate) fn meant<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn meant<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     let known = KNOWN_ELSEWHERE
         .iter()

@@ -12,6 +12,7 @@ mod lawful_runs;
 mod metropolis;
 mod misread;
 mod passes;
+mod porting;
 mod rays_in_cells;
 mod recorded;
 mod references;

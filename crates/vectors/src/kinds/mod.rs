@@ -1,0 +1,140 @@
+//! What there are vectors of: a file each.
+
+mod double_particle;
+mod equiangular;
+mod henyey_greenstein;
+mod jittered_ratio;
+mod spectral_tracking;
+mod unbiased_ray_marching;
+mod woodcock;
+
+use crate::case::{Case, Sort, header};
+use crate::tolerance::Finished;
+use crate::{Arithmetic, Binary64, Draw, Outcome, Profile, Run, Script};
+use serde_json::Value;
+
+/// An estimator, a sampler or a function with its parameters, written down over any arithmetic.
+pub(crate) trait Model {
+    /// The result of one run.
+    fn run<A: Arithmetic>(&self, run: &mut Run<'_, A>) -> Outcome<A::Number>;
+
+    /// The parameters, as a case states them; of estimators the spec that `harness estimate` reads. Nothing of models that only mistakes need.
+    fn stated(&self) -> Value {
+        Value::Null
+    }
+
+    /// True where the result takes e^x or an angle, of which libraries differ in the last place; else operations decide all bits.
+    fn takes_functions(&self) -> bool {
+        false
+    }
+
+    /// What ports with a known mistake make of the same variates, in doubles.
+    fn mistakes(&self, _script: &Script, _profile: Profile) -> Vec<(&'static str, Finished)> {
+        Vec::new()
+    }
+
+    /// True of what looks up a profile.
+    fn looks_up(&self) -> bool {
+        true
+    }
+}
+
+/// A kind: its name, what it puts out, and its cases.
+#[derive(Debug)]
+pub struct Kind {
+    /// Name, as specs have it.
+    pub name: &'static str,
+    /// Names of its results, in order.
+    pub outputs: &'static [&'static str],
+    /// Facts that decide bits or traps, by name.
+    pub notes: &'static [(&'static str, &'static str)],
+    cases: fn() -> Vec<Case>,
+}
+
+impl Kind {
+    /// All cases, in the order of their file.
+    #[must_use]
+    pub fn cases(&self) -> Vec<Case> {
+        (self.cases)()
+    }
+
+    /// The file of the kind: a header, then a case a line.
+    #[must_use]
+    pub fn lines(&self) -> Vec<Value> {
+        let cases = self.cases().into_iter().map(|case| case.json);
+        std::iter::once(header(self.name, self.outputs, self.notes)).chain(cases).collect()
+    }
+}
+
+/// All kinds.
+pub static KINDS: [&Kind; 7] = [
+    &double_particle::KIND,
+    &woodcock::KIND,
+    &jittered_ratio::KIND,
+    &unbiased_ray_marching::KIND,
+    &spectral_tracking::KIND,
+    &equiangular::KIND,
+    &henyey_greenstein::KIND,
+];
+
+/// Cases drawn of one set of parameters.
+const DRAWN: usize = 60;
+/// Variates that one case may draw.
+const MOST_DRAWS: usize = 400;
+
+/// Cases under a name KIND/PARAMETERS.
+struct Cases {
+    cases: Vec<Case>,
+}
+
+impl Cases {
+    fn new() -> Self {
+        Self { cases: Vec::new() }
+    }
+
+    /// Adds cases drawn at random.
+    fn draw(&mut self, name: &str, model: &impl Model, profile: Profile) {
+        for number in 0..DRAWN {
+            let id = format!("{name}/{number:04}");
+            let script = Script::of(&id, MOST_DRAWS);
+            self.cases.extend(Case::of(id, Sort::Drawn, model, &script, profile));
+        }
+    }
+
+    /// Adds a case on a border.
+    fn tie(&mut self, name: &str, model: &impl Model, profile: Profile, draws: Vec<Draw>) {
+        self.by_hand(name, Sort::Tie, model, profile, draws);
+    }
+
+    /// Adds a case at an end of the variates.
+    fn extreme(&mut self, name: &str, model: &impl Model, profile: Profile, draws: Vec<Draw>) {
+        self.by_hand(name, Sort::Extreme, model, profile, draws);
+    }
+
+    fn by_hand(&mut self, name: &str, sort: Sort, model: &impl Model, profile: Profile, draws: Vec<Draw>) {
+        self.cases.extend(Case::of(name.to_owned(), sort, model, &Script::new(draws), profile));
+    }
+}
+
+/// A mistake of this name: what the model makes of the same variates in doubles.
+fn mistake(
+    name: &'static str,
+    model: &impl Model,
+    script: &Script,
+    profile: Profile,
+) -> (&'static str, Finished) {
+    (name, Finished::of(model, Binary64, script, profile))
+}
+
+/// The variate below 1.
+const LARGEST: u64 = (1 << 53) - 1;
+
+/// The exponential e, whatever variate has it.
+fn given(exponential: f64) -> Draw {
+    Draw::Given(exponential)
+}
+
+/// The variate u.
+fn u(u: f64) -> Draw {
+    Draw::uniform(u)
+}
