@@ -9,7 +9,6 @@ use fairflight_laws::{Expectation, Run, Truth};
 use fairflight_media::{
     Breakpoints, Extinction, OpticalThickness, PiecewiseConstant, RayQuadrature, Tolerance,
 };
-use fairflight_sources::UniformSource;
 use fairflight_stats::{Scores, sidak_level};
 use fairflight_transmittance::{ClosedForm, Tracking};
 use proptest::prelude::*;
