@@ -54,6 +54,12 @@ pub enum IntegratorPlan {
     Metropolis(Box<MetropolisPlan>),
 }
 
+/// Columns and rows of pixels, and the number of estimates of each.
+type Pixels<'a> = (&'a [[u32; 2]], u32);
+
+/// Callback that is told the number of a pixel with each estimate, until it breaks.
+type Take<'a, C> = dyn FnMut(usize, C) -> ControlFlow<()> + 'a;
+
 /// An integrator on a medium, for one tile: one call per camera ray, and what happens below is compiled for the types of the scene.
 pub trait TileIntegrator<C> {
     /// Draws one estimate \[radiance\] for a ray whose direction has unit length.
@@ -75,15 +81,9 @@ pub trait TileIntegrator<C> {
         }
     }
 
-    /// Draws so many estimates for each of `pixels`, each pixel from a stream of its own, until `take` says that it is enough: it is told the
-    /// number of the pixel with each. Unless the integrator says otherwise, one pixel after the other; those of one pixel are in order in any case.
-    fn pixels(
-        &mut self,
-        camera: &Camera,
-        (pixels, samples): (&[[u32; 2]], u32),
-        sources: &mut [Seeded],
-        take: &mut dyn FnMut(usize, C) -> ControlFlow<()>,
-    ) {
+    /// Draws estimates of pixels, each from a stream of its own: one pixel after the other unless the integrator says otherwise, those of one in order.
+    fn pixels(&mut self, camera: &Camera, work: Pixels<'_>, sources: &mut [Seeded], take: &mut Take<'_, C>) {
+        let (pixels, samples) = work;
         for (i, (pixel, source)) in pixels.iter().zip(sources).enumerate() {
             for _ in 0..samples {
                 let within = [source.next_uniform(), source.next_uniform()];
@@ -186,13 +186,7 @@ impl<M: LineThickness, C: Spectrum> TileIntegrator<C> for InLanes<'_, M, C> {
         self.0.radiance(line, source)
     }
     /// Pixel beside pixel; whatever `take` says, all of them.
-    fn pixels(
-        &mut self,
-        camera: &Camera,
-        work: (&[[u32; 2]], u32),
-        sources: &mut [Seeded],
-        take: &mut dyn FnMut(usize, C) -> ControlFlow<()>,
-    ) {
+    fn pixels(&mut self, camera: &Camera, work: Pixels<'_>, sources: &mut [Seeded], take: &mut Take<'_, C>) {
         self.0.trace(camera, work, sources, |pixel, radiance| {
             let _ = take(pixel, radiance);
         });
