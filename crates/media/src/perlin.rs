@@ -160,7 +160,7 @@ impl Medium for Perlin {
             let [x, y, z] = points;
             return std::array::from_fn(|lane| self.sigma_t_local(DVec3::new(x[lane], y[lane], z[lane])));
         }
-        // What a sum begins with, for the sign of its zeros.
+        // The neutral number of sums, for the sign of their zeros.
         let mut sum = [std::iter::empty::<f64>().sum::<f64>(); LANES];
         for &(frequency, weight) in &self.octaves {
             let mut lattice = *points;

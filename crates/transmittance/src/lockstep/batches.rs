@@ -1,4 +1,4 @@
-//! What lanes write to.
+//! Slices that lanes fill.
 
 use fairflight_elementary::lanes::LANES;
 

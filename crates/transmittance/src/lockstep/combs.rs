@@ -11,7 +11,7 @@ use smallvec::{SmallVec, smallvec};
 
 /// An estimator that draws combs one after the other.
 trait OfCombs {
-    /// What is known of an estimate between two combs.
+    /// Knowledge of an estimate between two combs.
     type State;
 
     /// The comb, on each of the segments.

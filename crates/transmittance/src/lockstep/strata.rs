@@ -36,7 +36,7 @@ struct Places {
 }
 
 impl Places {
-    /// All lanes before the first cell.
+    /// Lanes that have not entered a cell.
     const BEFORE: Self = Self {
         index: [0; LANES],
         from: [0.0; LANES],

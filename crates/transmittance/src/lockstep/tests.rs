@@ -39,7 +39,7 @@ fn one_after_the_other<F: Extinction, E: for<'a> TransmittanceEstimator<Counted<
     SEEDS.iter().zip(lengths()).map(of_lane).collect()
 }
 
-/// What `fill` makes of batches.
+/// Estimates and look-ups that `fill` makes.
 fn found(fill: impl FnOnce(&mut Batches<'_, '_>)) -> Found {
     let [mut estimates, mut counts] = [(); 2].map(|()| lengths().map(|length| vec![f64::NAN; length]));
     let mut slices = estimates.each_mut().map(Vec::as_mut_slice);
