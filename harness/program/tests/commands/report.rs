@@ -121,7 +121,7 @@ fn the_report_on_chains_has_its_sections_and_finds_no_bias() {
     assert_eq!(results["unsound"].as_array().map(Vec::len), Some(0), "{}", results["unsound"]);
     let sections: Vec<&str> =
         results["sections"].as_array().expect("sections").iter().filter_map(|s| s["id"].as_str()).collect();
-    assert_eq!(sections, ["equal-time", "resolution", "mutations", "rows", "start"]);
+    assert_eq!(sections, ["equal-time", "resolution", "mutations", "maps", "sizes", "rows", "start"]);
 }
 
 #[test]

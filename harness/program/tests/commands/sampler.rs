@@ -29,7 +29,7 @@ fn all() -> [Value; 3] {
     [single_scattering(), transmittance(), beam_radiance()]
 }
 
-fn by(mut scene: Value, keys: Value) -> Value {
+fn by(mut scene: Value, keys: &Value) -> Value {
     scene["integrator"].as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
     scene
 }
@@ -40,7 +40,7 @@ fn points_do_not_move_the_mean() {
         let expected = mean(&scene, "256");
         for sampler in ["sobol", "halton"] {
             agree(
-                mean(&by(scene.clone(), json!({ "sampler": sampler, "replicas": 64 })), "256"),
+                mean(&by(scene.clone(), &json!({ "sampler": sampler, "replicas": 64 })), "256"),
                 expected,
                 0.04,
             );
@@ -78,7 +78,7 @@ fn the_error_is_told_by_replicas() {
 #[test]
 fn the_bits_do_not_depend_on_threads_or_passes() {
     for scene in all() {
-        let mut scene = by(scene, json!({ "sampler": "sobol", "replicas": 2 }));
+        let mut scene = by(scene, &json!({ "sampler": "sobol", "replicas": 2 }));
         scene["camera"]["resolution"] = json!([37, 18]);
         let one = drawn(&scene, &["--samples-per-pixel", "8", "--threads", "1"]);
         assert!(one == drawn(&scene, &["--samples-per-pixel", "8", "--threads", "3"]));
@@ -88,7 +88,7 @@ fn the_bits_do_not_depend_on_threads_or_passes() {
 
 #[test]
 fn the_time_limit_ends_an_image_after_whole_point_sets() {
-    let scene = by(single_scattering(), json!({ "sampler": "halton", "replicas": 1000 }));
+    let scene = by(single_scattering(), &json!({ "sampler": "halton", "replicas": 1000 }));
     let limited = statistics(&scene, &["--samples-per-pixel", "32000", "--time-limit", "1e-9"]);
     assert_eq!(limited["image"]["samples_per_pixel"], 32);
     assert!(limited["warnings"].to_string().contains("after 32 of 32000 samples"));
@@ -104,7 +104,7 @@ fn samplers_that_are_refused() {
             &["integrator.sampler: ", kind, "transmittance, single_scattering, beam_radiance"],
         );
     }
-    let refuses = |keys: Value, words: &[&str]| refused(&by(single_scattering(), keys).to_string(), words);
+    let refuses = |keys: Value, words: &[&str]| refused(&by(single_scattering(), &keys).to_string(), words);
     refuses(json!({ "sampler": "random" }), &["integrator.sampler", "independent, sobol or halton"]);
     refuses(json!({ "replicas": 4 }), &["integrator.replicas", "sampler"]);
     refuses(json!({ "sampler": "independent", "replicas": 4 }), &["integrator.replicas", "sampler"]);
