@@ -6,6 +6,7 @@ pub(crate) const ENTRY_BITS: u32 = 7;
 pub(crate) const ENTRIES: usize = 1 << ENTRY_BITS;
 
 #[rustfmt::skip]
+#[allow(clippy::approx_constant, reason = "entries of a table have no names")]
 pub(crate) static TABLE: [[f64; 3]; ENTRIES] = [
     [1.4501953125, -0.37169824563738985, 4.294712074334711e-14],
     [1.4423828125, -0.36629647693189327, -3.3439937526704225e-14],

@@ -6,6 +6,7 @@ pub(crate) const ENTRY_BITS: u32 = 7;
 pub(crate) const ENTRIES: usize = 1 << ENTRY_BITS;
 
 #[rustfmt::skip]
+#[allow(clippy::approx_constant, reason = "entries of a table have no names")]
 pub(crate) static TABLE: [[f64; 2]; ENTRIES] = [
     [1.0, 0.0],
     [1.0054299011128027, 9.499186535455032e-17],

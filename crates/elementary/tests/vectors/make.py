@@ -87,6 +87,7 @@ pub(crate) const ENTRY_BITS: u32 = {ENTRIES.bit_length() - 1};
 pub(crate) const ENTRIES: usize = 1 << ENTRY_BITS;
 
 #[rustfmt::skip]
+#[allow(clippy::approx_constant, reason = "entries of a table have no names")]
 pub(crate) static TABLE: [[f64; {len(rows[0])}]; ENTRIES] = [
 {lines}];
 """

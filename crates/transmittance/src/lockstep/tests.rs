@@ -209,7 +209,7 @@ fn what_is_not_lawful_is_seen() {
     let lawful = |field: &Bounded<PiecewiseLinear>, upper_bound| {
         let watched = Watched::new(field, &Woodcock, upper_bound);
         found(|batches| {
-            pulp::Arch::new().dispatch(Fill { estimator: &Woodcock, field: &watched, seeds: SEEDS, batches })
+            pulp::Arch::new().dispatch(Fill { estimator: &Woodcock, field: &watched, seeds: SEEDS, batches });
         });
         watched.all_lawful()
     };
