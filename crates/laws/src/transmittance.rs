@@ -133,11 +133,15 @@ pub type Observed<G, E> = Counted<Watched<G, Admitted<G, E>>>;
 ///
 /// # Errors
 /// If a look-up or an estimate is not lawful: a law says nothing then.
-pub fn check<G, E>(field: G, estimator: E, expected: &Expectation, run: Run) -> Result<Evidence, Refusal>
-where
+pub fn check<
     G: Extinction + Copy,
     E: TransmittanceEstimator<G> + TransmittanceEstimator<Observed<G, E>> + Copy,
-{
+>(
+    field: G,
+    estimator: E,
+    expected: &Expectation,
+    run: Run,
+) -> Result<Evidence, Refusal> {
     let mut observed: Observed<G, E> = Counted::new(Watched::new(field, Admitted { field, estimator }));
     let mut tally = Tally::new(expected, run);
     for batch in 0..batch_count(run.samples) {
@@ -166,11 +170,12 @@ impl<'a> Tally<'a> {
     }
 
     /// Draws a batch from its stream.
-    fn draw<G, E>(&mut self, estimator: &E, observed: &mut Observed<G, E>, batch: u64) -> Result<(), Refusal>
-    where
-        G: Extinction,
-        E: TransmittanceEstimator<G> + TransmittanceEstimator<Observed<G, E>>,
-    {
+    fn draw<G: Extinction, E: TransmittanceEstimator<G> + TransmittanceEstimator<Observed<G, E>>>(
+        &mut self,
+        estimator: &E,
+        observed: &mut Observed<G, E>,
+        batch: u64,
+    ) -> Result<(), Refusal> {
         let (mut values, mut counts) = (std::mem::take(&mut self.values), std::mem::take(&mut self.counts));
         counts.clear();
         draw_batch(self.run.seed, batch, self.run.samples, &mut values, |source| {

@@ -14,9 +14,9 @@ use path_common::{
 };
 use std::collections::BTreeSet;
 
-type Make = fn(&dyn PathWorld) -> Boxed<'_>;
+type Named = (&'static str, fn(&dyn PathWorld) -> Boxed<'_>);
 
-const ALL: [(&str, Make); 8] = [
+const ALL: [Named; 8] = [
     ("lens", |world| Box::new(Lens::new(world, fine_sizes()))),
     ("lens, scaled", |world| Box::new(Lens::new(world, fine_sizes()).scaling())),
     ("Lai's lens", |world| Box::new(LaiLens::new(world, fine_sizes()))),
@@ -41,11 +41,11 @@ fn judge(bank: &Bank, mutation: &mut dyn Mutation<PathState>, seed: u64) -> Judg
 }
 
 /// Every mutation keeps the contribution of all kinds of paths together, and the best of its functions would show a drift of `detectable`.
-fn all_agree(bank: &Bank, scene: &Scene, (kinds, detectable): (usize, f64), seed: u64) {
+fn agree(mutations: &[Named], bank: &Bank, scene: &Scene, (kinds, detectable): (usize, f64), seed: u64) {
     let found: BTreeSet<String> = bank.iter().flatten().map(|(path, _)| signature(path)).collect();
     assert!(found.len() >= kinds, "{} kinds", found.len());
     let view = scene.view();
-    for (name, make) in ALL {
+    for (name, make) in mutations {
         let judged = judge(bank, &mut *make(&view), seed);
         let reach = |drift: &Drift| drift.verdict.detectable_relative_bias.unwrap_or(f64::INFINITY);
         let least = judged.drifts.iter().map(reach).fold(f64::INFINITY, f64::min);
@@ -60,7 +60,7 @@ fn kinds_with_mirrors_and_glass() {
     let scene = glass();
     let wanted = |path: &PathState| path.len() > 1 && path.vertices.iter().any(PathVertex::is_smooth);
     let bank = bank(&scene, (6, 24.0), wanted, (40_000, 1));
-    all_agree(&bank, &scene, (100, 0.5), 1);
+    agree(&ALL, &bank, &scene, (100, 0.5), 1);
 }
 
 #[test]
@@ -70,7 +70,18 @@ fn kinds_under_a_sky_with_lights_of_all_sorts() {
     let ends: BTreeSet<String> =
         bank.iter().flatten().map(|(path, _)| format!("{:?}", path.vertices[path.len()].site)).collect();
     assert_eq!(ends.len(), 4, "{ends:?}");
-    all_agree(&bank, &scene, (20, 0.5), 1);
+    let few: Vec<Named> = ALL.into_iter().filter(|(name, _)| *name != "Lai's lens").collect();
+    agree(&few, &bank, &scene, (20, 0.5), 1);
+}
+
+/// Lai's lens accepts one step of fifty here: of 40,000 paths its drift can be judged at eight of twenty seeds, of 160,000 at all of eight that were tried, and then
+/// shows 0.24 at most.
+#[test]
+fn a_lens_that_seldom_accepts_under_a_sky() {
+    let scene = sky();
+    let bank = bank(&scene, (4, 24.0), |path| path.len() > 1, (160_000, 1));
+    let lens: Vec<Named> = ALL.into_iter().filter(|(name, _)| *name == "Lai's lens").collect();
+    agree(&lens, &bank, &scene, (20, 0.5), 1);
 }
 
 #[test]

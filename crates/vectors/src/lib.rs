@@ -15,6 +15,17 @@
 //! 1 − σ/σ_samp cancels. What decides between < and ≤ is robust at no precision; such ties are cases of their own, on dyadic numbers that every precision
 //! holds exactly.
 //!
+//! ```
+//! use fairflight_vectors::{KINDS, Precision, judge};
+//! use serde_json::json;
+//!
+//! let woodcock = KINDS.iter().find(|kind| kind.name == "woodcock").unwrap();
+//! let case = &woodcock.cases()[0];
+//! // A port that looks nothing up and says 1.
+//! let answer = json!({ "id": case.id, "value": 1, "draws": 1, "lookups": 0, "s": [] });
+//! assert!(judge(&case.json, &answer, Precision::Binary64).is_err());
+//! ```
+//!
 //! Logarithms and exponentials of the exact run are rounded once. They come from no library that a later version of this project may change.
 
 mod arithmetic;

@@ -79,9 +79,11 @@ pub(super) struct ByCells<E, C = Vec<BoundCell>> {
     pub(super) cells: InCells<Vacuum, C>,
 }
 
-impl<F: Extinction, E, C: AsRef<[BoundCell]>> TransmittanceEstimator<F> for ByCells<E, C>
-where
+impl<
+    F: Extinction,
     E: for<'a, 'b> TransmittanceEstimator<InCells<&'a F, &'b [BoundCell]>>,
+    C: AsRef<[BoundCell]>,
+> TransmittanceEstimator<F> for ByCells<E, C>
 {
     #[inline]
     fn estimate(&self, field: &F, source: &mut impl UniformSource) -> f64 {
@@ -93,9 +95,8 @@ where
     }
 }
 
-impl<F: Extinction, E, C: AsRef<[BoundCell]>> Lockstep<F> for ByCells<E, C>
-where
-    E: for<'a, 'b> Lockstep<InCells<&'a F, &'b [BoundCell]>>,
+impl<F: Extinction, E: for<'a, 'b> Lockstep<InCells<&'a F, &'b [BoundCell]>>, C: AsRef<[BoundCell]>>
+    Lockstep<F> for ByCells<E, C>
 {
     #[inline(always)]
     fn fill(&self, field: &F, source: &mut SeededLanes, batches: &mut Batches<'_, '_>) {

@@ -1,6 +1,6 @@
 //! The beam radiance estimate: its parameters checked, and the integrator of one tile.
 
-use super::integrator::{AnyIntegrator, Counts, SceneVolume, by_points};
+use super::tile_integrator::{AnyIntegrator, Counts, SceneVolume, by_points};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;

@@ -1,7 +1,7 @@
 //! Bidirectional path tracing: its parameters checked, and the integrator of one tile.
 
 use super::Tally;
-use super::integrator::{AnyIntegrator, Counts, SceneVolume, Splatted, TileIntegrator};
+use super::tile_integrator::{AnyIntegrator, Counts, SceneVolume, Splatted, TileIntegrator};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;

@@ -1,8 +1,8 @@
 //! Metropolis sampling: its parameters checked, the target of chains, and the integrator of what they leave out.
 
 use super::bidirectional::BidirectionalPlan;
-use super::integrator::{AnyIntegrator, SceneVolume, plain};
 use super::path_space::PathSpace;
+use super::tile_integrator::{AnyIntegrator, SceneVolume, plain};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::InScene;

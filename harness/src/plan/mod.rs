@@ -18,12 +18,13 @@ mod scene;
 mod single_scattering;
 mod surfaces;
 mod tally;
+mod tile_integrator;
 mod transport;
 mod walk;
 
 pub use beam_radiance::BeamRadiancePlan;
 pub use bidirectional::BidirectionalPlan;
-pub use integrator::{AnyIntegrator, Counts, IntegratorPlan, SceneVolume, Splatted, TileIntegrator};
+pub use integrator::IntegratorPlan;
 pub use metropolis::MetropolisPlan;
 pub(crate) use metropolis::{ChainStarts, Learning, Lesson, SIZES, Walked};
 pub use path_tracer::PathTracerPlan;
@@ -32,6 +33,7 @@ pub use sampler::PixelPoints;
 pub use scene::{Radiant, ScenePlan, Spectra};
 pub use single_scattering::SingleScatteringPlan;
 pub use tally::Tally;
+pub use tile_integrator::{AnyIntegrator, Counts, SceneVolume, Splatted, TileIntegrator};
 pub use transport::{Seen, Stage, TransportPlan, VplPlan};
 pub use walk::{SpaceSampling, WalkPlan};
 

@@ -1,7 +1,7 @@
 //! The path tracer and what extends it: its parameters checked, and the integrator of one tile.
 
 use super::SpaceSampling;
-use super::integrator::{AnyIntegrator, Counts, SceneVolume, TileIntegrator, counting};
+use super::tile_integrator::{AnyIntegrator, Counts, SceneVolume, TileIntegrator, counting};
 use super::transport::{Seen, Stage, TransportPlan};
 use crate::Failure;
 use crate::estimator::{InScene, ShadowWorker, Unlawful};

@@ -1,6 +1,7 @@
 //! Single scattering with an estimator of any kind that gives transmittance at every distance.
 
-use super::integrator::{AnyIntegrator, Counts, SceneVolume, admits_majorant, by_points};
+use super::integrator::admits_majorant;
+use super::tile_integrator::{AnyIntegrator, Counts, SceneVolume, by_points};
 use super::transport::Stage;
 use crate::Failure;
 use crate::estimator::{

@@ -1,6 +1,6 @@
 //! Integrators that know surfaces: what is common to them, and virtual point lights.
 
-use super::integrator::{AnyIntegrator, Counts, SceneVolume, counting};
+use super::tile_integrator::{AnyIntegrator, Counts, SceneVolume, counting};
 use super::{AnyPhase, Radiant, SpaceSampling, WalkPlan};
 use crate::Failure;
 use crate::estimator::{InScene, Preparation, Shadow, ShadowWorker, Unlawful};

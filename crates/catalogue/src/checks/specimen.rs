@@ -182,12 +182,15 @@ impl<F: SpecimenField> Specimen<F> {
         }
     }
 
-    pub(crate) fn tracking<M, C, R>(&self, tracking: &Tracking<M, C, R>, run: Run) -> CheckResult
-    where
+    pub(crate) fn tracking<
         M: CollisionModel,
         C: OpticalThickness + Breakpoints + Ranged,
         R: InvertOpticalThickness + Breakpoints + Ranged,
-    {
+    >(
+        &self,
+        tracking: &Tracking<M, C, R>,
+        run: Run,
+    ) -> CheckResult {
         let (control, sampling) = (tracking.control(), tracking.sampling());
         let mut also = control.breakpoints();
         also.extend(sampling.breakpoints());

@@ -14,15 +14,13 @@ const FEWEST: u64 = 4;
 ///
 /// # Errors
 /// As there.
-pub fn check_in_lanes<'f, 'e, G, E>(
+pub fn check_in_lanes<'f, 'e, G: Extinction, E: Lockstep<G> + for<'a> Lockstep<Watched<'a, G, E>>>(
     field: &'f G,
     estimator: &'e E,
     expected: &Expectation,
     run: Run,
 ) -> Result<Evidence, Refusal>
 where
-    G: Extinction,
-    E: Lockstep<G> + for<'a> Lockstep<Watched<'a, G, E>>,
     &'e E: TransmittanceEstimator<&'f G> + TransmittanceEstimator<Observed<&'f G, &'e E>>,
 {
     let batches = batch_count(run.samples);

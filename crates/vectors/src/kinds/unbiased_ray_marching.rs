@@ -108,7 +108,8 @@ impl Model for UnbiasedRayMarching {
             ("the comb in world units: u not times h", Slip::WorldUnits),
             ("one pivot only", Slip::OnePivot),
             ("endpoint matching of the other sign", Slip::Sign),
-            ("<= for < in the decision of the order", Slip::Order),
+            ("<= for < in the decision to go on", Slip::GoesOn),
+            ("<= for < in the decision of a further order", Slip::Further),
         ];
         let wrong = |(name, slip)| {
             mistake(name, &Wrong { teeth, endpoint_matching, roulette, slip }, script, profile)
@@ -151,7 +152,8 @@ enum Slip {
     WorldUnits,
     OnePivot,
     Sign,
-    Order,
+    GoesOn,
+    Further,
 }
 
 /// Unbiased ray marching with a mistake.
@@ -207,12 +209,11 @@ impl Model for Wrong {
         }
         let stop = if self.slip == Slip::Exchanged { 1.0 - self.roulette } else { self.roulette };
         let going_on = run.number(1.0 - stop);
-        let is_border = self.slip == Slip::Order;
-        let below = |x: A::Number, y: A::Number| x < y || x == y && is_border;
+        let below = |slip, x: A::Number, y: A::Number| x < y || x == y && self.slip == slip;
         let mut order = 0;
-        if below(run.uniform(), going_on.clone()) {
+        if below(Slip::GoesOn, run.uniform(), going_on.clone()) {
             order = 2_u32;
-            while below(run.uniform() * run.number(f64::from(order + 1)), run.number(2.0)) {
+            while below(Slip::Further, run.uniform() * run.number(f64::from(order + 1)), run.number(2.0)) {
                 order += 1;
             }
         }
