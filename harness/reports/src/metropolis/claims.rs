@@ -48,15 +48,14 @@ pub(super) fn summary(compared: &[Compared], rows: &[Row], start: &start::Study)
             behind.join("; ")
         ));
     }
-    let lowest = |row: &&Row| row.over_paths().interval[0];
-    let dense =
-        rows.iter().filter(|row| lowest(row).is_finite()).max_by(|a, b| lowest(a).total_cmp(&lowest(b)));
-    if let (Some(thin), Some(dense)) = (rows.first(), dense) {
-        let told = |row: &Row| format!("{} at σ_t = {}", row.over_paths().words(2), row.sigma_t);
+    let efficiencies: Vec<_> =
+        rows.iter().filter_map(|row| row.over_paths().map(|efficiency| (row.sigma_t, efficiency))).collect();
+    let best = efficiencies.iter().max_by(|(_, a), (_, b)| a.interval[0].total_cmp(&b.interval[0]));
+    if let (Some(thin), Some(best)) = (efficiencies.first(), best) {
+        let [thin, best] =
+            [thin, best].map(|(sigma_t, efficiency)| format!("{} at σ_t = {sigma_t}", efficiency.words(2)));
         summary.push(format!(
-            "Where a lamp lights all, the efficiency of a chain over paths is {} of that of the paths themselves, and at best {}.",
-            told(thin),
-            told(dense)
+            "Where a lamp lights all, the efficiency of a chain over paths is {thin} of that of the paths themselves, and at best {best}."
         ));
     }
     summary.push(start.summary());

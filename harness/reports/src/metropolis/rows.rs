@@ -41,14 +41,30 @@ impl Row {
     }
 
     /// The efficiency of rows, 1/(MSE · CPU s), over that of the flat vector.
-    fn gain(&self) -> Measured {
-        self.flat.cost.over(&self.rows.cost)
+    fn gain(&self) -> Option<Measured> {
+        told(self.flat.cost.over(&self.rows.cost))
     }
 
     /// The same over that of independent paths.
-    pub(super) fn over_paths(&self) -> Measured {
-        self.independent.cost.over(&self.rows.cost)
+    pub(super) fn over_paths(&self) -> Option<Measured> {
+        told(self.independent.cost.over(&self.rows.cost))
     }
+
+    /// That of the flat vector over independent paths.
+    fn flat_over_paths(&self) -> Option<Measured> {
+        told(self.independent.cost.over(&self.flat.cost))
+    }
+}
+
+/// An efficiency as far as the images tell it: none where its interval spans a factor of a hundred, since a few samples make nearly all of the variance then.
+fn told(efficiency: Measured) -> Option<Measured> {
+    let [low, high] = efficiency.interval;
+    (high < 100.0 * low).then_some(efficiency)
+}
+
+/// A cell of an efficiency, empty where none is told.
+fn cell(efficiency: Option<Measured>) -> Cell {
+    efficiency.map_or(Cell::Number(f64::NAN), |efficiency| efficiency.cell())
 }
 
 /// Mean probability to accept a small step; NaN for a method without any.
@@ -111,7 +127,8 @@ pub(super) fn r6(rows: &[Row]) -> Claim {
     };
     let words = |row: &Row| {
         let [flat, by_vertex] = row.chains().map(|entry| small_steps(entry).value);
-        format!("σ_t = {}: {flat:.3} to {by_vertex:.3}, efficiency {}", row.sigma_t, row.gain().words(2))
+        let gain = row.gain().map_or_else(|| "not told".to_owned(), |gain| gain.words(2));
+        format!("σ_t = {}: {flat:.3} to {by_vertex:.3}, efficiency {gain}", row.sigma_t)
     };
     Claim::new(
         ("R6", "raab-2008 4.4"),
@@ -129,21 +146,23 @@ pub(super) fn section(run: &Run<'_>, rows: &[Row]) -> Section {
         "harness/scenes/mixed.json in gray, {side} x {side} pixels, with the extinction at the axis; path tracing with σ_samp = {MAJORANT} σ_t and ratio \
          tracking, so that a path draws as many variates as it meets collisions, of which some are null. States of a chain are these variates, one after the other \
          (flat), or by the vertex and the purpose that they are drawn for (rows). Large steps 0.3. Intervals are 95 %, from {REPLICAS} independent images of \
-         {samples} samples per pixel, {fewer} in the densest, against {reference} by path tracing in closed form.",
+         {samples} samples per pixel, {fewer} in the densest, against {reference} by path tracing in closed form. No efficiency is told where its interval spans a factor of a hundred.",
         side = side(run),
         samples = run.samples(SAMPLES),
         fewer = run.samples(DENSEST),
         reference = run.samples(REFERENCE.0) * REFERENCE.1,
     );
     let x = || Axis::logarithmic("σ_t [1/length]");
-    let curve = |name: &str, of: &dyn Fn(&Row) -> Measured| {
-        Curve::joined(name, rows.iter().map(|row| of(row).mark(row.sigma_t)))
+    let curve = |name: &str, of: &dyn Fn(&Row) -> Option<Measured>| {
+        Curve::joined(name, rows.iter().filter_map(|row| of(row).map(|measured| measured.mark(row.sigma_t))))
     };
-    let acceptance =
-        vec![curve("rows", &|row| small_steps(&row.rows)), curve("flat", &|row| small_steps(&row.flat))];
+    let acceptance = vec![
+        curve("rows", &|row| Some(small_steps(&row.rows))),
+        curve("flat", &|row| Some(small_steps(&row.flat))),
+    ];
     let gain = vec![
         curve("rows", &Row::over_paths),
-        curve("flat", &|row| row.independent.cost.over(&row.flat.cost)),
+        curve("flat", &Row::flat_over_paths),
         Curve::reference("independent paths", [(SIGMA_T[0], 1.0), (SIGMA_T[SIGMA_T.len() - 1], 1.0)]),
     ];
     let panel = |curves: Vec<Curve>, y: Axis| Panel { curves, ..Panel::new("", x(), y) };
@@ -161,8 +180,8 @@ pub(super) fn section(run: &Run<'_>, rows: &[Row]) -> Section {
             ("σ_t", "1/length", &|row| Cell::Number(row.sigma_t)),
             ("acceptance, flat", "1", &|row| small_steps(&row.flat).cell()),
             ("acceptance, rows", "1", &|row| small_steps(&row.rows).cell()),
-            ("efficiency, rows over flat", "1", &|row| row.gain().cell()),
-            ("efficiency, rows over independent paths", "1", &|row| row.over_paths().cell()),
+            ("efficiency, rows over flat", "1", &|row| cell(row.gain())),
+            ("efficiency, rows over independent paths", "1", &|row| cell(row.over_paths())),
             ("step over path, CPU time", "1", &|row| {
                 Cell::Number(row.rows.seconds / row.independent.seconds)
             }),
