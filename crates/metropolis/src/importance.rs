@@ -17,7 +17,7 @@ pub struct Importance {
 /// The rule by which an importance is learnt from an image and its variances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImportanceRule {
-    /// What visits are spread for.
+    /// Sum of errors over the pixels that the spread of visits makes least.
     pub aim: Aim,
     /// The share of the mean below which no importance falls, above 0 \[1\]: a pixel that is not important at all would stay black.
     pub floor: f64,

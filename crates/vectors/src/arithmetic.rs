@@ -1,4 +1,4 @@
-//! What a run reckons with.
+//! Arithmetics of runs: exact, in doubles, perturbed.
 
 use crate::number::{Number, Precise};
 use crate::perturbed::{Noise, Perturbed};

@@ -37,9 +37,9 @@ pub fn header(kind: &str, outputs: &[&str], notes: &[(&str, &str)]) -> Value {
 pub struct Case {
     /// KIND/PARAMETERS/NUMBER.
     pub id: String,
-    /// All of it.
+    /// The case as a line of its file.
     pub json: Value,
-    /// What ports with a known mistake answer.
+    /// Answers of ports with a known mistake.
     pub mistaken: Vec<Mistaken>,
 }
 
@@ -52,7 +52,7 @@ pub struct Mistaken {
     pub answer: Value,
 }
 
-/// What decides whether a case is one of every precision.
+/// Origin of a case, which decides the precisions that it is put to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sort {
     /// Drawn at random; kept if robust at binary64.

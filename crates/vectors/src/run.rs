@@ -12,7 +12,7 @@ pub(crate) enum Use {
     Exponential,
 }
 
-/// Where a free flight ended.
+/// Outcome of a free flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// At a collision.

@@ -51,7 +51,7 @@ impl Finished {
     }
 }
 
-/// How far a right port may be off.
+/// The largest deviation of a right port from the exact run.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tolerance {
     /// Of each value.

@@ -35,7 +35,7 @@ pub(super) struct Group {
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Event {
-    /// It goes straight on.
+    /// A null collision: the importon keeps its direction.
     Transmitted,
     Scattered,
     Escaped,

@@ -27,7 +27,7 @@ struct Particle<C> {
     samples: u32,
     /// Ratio of each channel's energy to that of the walk.
     colour: C,
-    /// All that it has met so far.
+    /// Radiance that its path has gathered so far \[radiance\].
     radiance: C,
 }
 

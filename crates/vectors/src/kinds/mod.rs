@@ -1,4 +1,4 @@
-//! What there are vectors of: a file each.
+//! Kinds of estimators, samplers and functions that have vectors: a file each.
 
 mod double_particle;
 mod equiangular;
@@ -28,7 +28,7 @@ pub(crate) trait Model {
         false
     }
 
-    /// What ports with a known mistake make of the same variates, in doubles.
+    /// Runs of ports with a known mistake on the same variates, in doubles.
     fn mistakes(&self, _script: &Script, _profile: Profile) -> Vec<(&'static str, Finished)> {
         Vec::new()
     }
@@ -66,7 +66,7 @@ impl Kind {
     }
 }
 
-/// All kinds.
+/// The registry of kinds, in the order of their files.
 pub static KINDS: [&Kind; 7] = [
     &double_particle::KIND,
     &woodcock::KIND,

@@ -42,7 +42,7 @@ pub(crate) enum LayerWord {
     Field,
     /// Exponentials are given
     Exponentials,
-    /// All from uniform variates
+    /// Exponentials are the port's own, from uniform variates
     Uniforms,
 }
 

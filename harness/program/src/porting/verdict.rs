@@ -1,4 +1,4 @@
-//! What the answers of a port amount to.
+//! The verdict on a port: its answers to the cases of one kind at one layer.
 
 use fairflight_vectors::{Case, Fault, Layer, Precision, judge};
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ pub(crate) struct Verdict {
     cases: usize,
     equal: usize,
     faults: Vec<(String, Fault)>,
-    /// How many of the answers that fail are those of a known mistake.
+    /// Numbers of wrong answers that are those of a known mistake, by its name.
     looks_like: BTreeMap<&'static str, usize>,
 }
 
