@@ -64,7 +64,8 @@ fn jittered_ratio(length: f32, majorant: f32, epsilon: f32) -> f32 {
     return product;
 }
 
-// Orders of unbiased ray marching that fit: a greater one comes once in 10^11 estimates at P = 0.1, once in 10^10 at P = 1.
+// Orders of unbiased ray marching that fit an array. A greater one, P 2^16/17!, comes once in 5.4 10^10 estimates at P = 0.1, in 5.4 10^9 at P = 1: its last terms are
+// cut, a bias below what any run of them shows.
 const MOST_ORDER = 16u;
 
 // One comb: an estimate of the optical thickness.
