@@ -16,7 +16,7 @@
 //! No value of those 10⁸ of each was off by more than one (`cargo run --release -p fairflight-elementary --example errors -- 100000000`).
 //!
 //! But for rare arguments they have no branch, so that a loop over an array of them becomes vector instructions: [`lanes`] has
-//! them for arrays, with the bits of one number. What no inner loop needs ([`pow`], [`tan`], [`acos`], [`atan2`], …) comes from the crate `libm`, which
+//! them for arrays, with the bits of one number, and [`InstructionSet`] compiles loops over them for the widest registers of a machine. What no inner loop needs ([`pow`], [`tan`], [`acos`], [`atan2`], …) comes from the crate `libm`, which
 //! is a fixed sequence of operations as well.
 //!
 //! ```
@@ -33,6 +33,7 @@
 
 mod exponential;
 mod functions;
+mod instruction_set;
 pub mod lanes;
 mod logarithm;
 mod parts;
@@ -40,6 +41,8 @@ mod rare;
 mod sine;
 mod table_of_logarithms;
 mod table_of_powers;
+
+pub use instruction_set::{InstructionSet, LaneWork};
 
 pub use functions::{cos, exp, exp_m1, ln, ln_1p, sin, sin_cos};
 pub use rare::{acos, asin, atan, atan2, cbrt, exp2, hypot, log2, log10, pow, sinh, tan};

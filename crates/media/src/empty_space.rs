@@ -27,6 +27,10 @@ impl LineThickness for EmptySpace {
     fn line_thickness(&self, _local: &Line, _from: f64, _to: f64) -> f64 {
         0.0
     }
+    #[inline(always)]
+    fn everywhere(&self) -> Option<f64> {
+        Some(0.0)
+    }
 }
 
 impl MediumBreakpoints for EmptySpace {

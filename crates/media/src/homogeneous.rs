@@ -37,6 +37,10 @@ impl LineThickness for Homogeneous {
     fn line_thickness(&self, _local: &Line, from: f64, to: f64) -> f64 {
         self.sigma_t * (to - from)
     }
+    #[inline(always)]
+    fn everywhere(&self) -> Option<f64> {
+        Some(self.sigma_t)
+    }
 }
 
 impl MediumBreakpoints for Homogeneous {

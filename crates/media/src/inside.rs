@@ -62,6 +62,32 @@ impl Bounds {
         }
     }
 
+    /// [`contains`](Self::contains) in all lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn contains_lanes(&self, points: &[Lanes; 3]) -> [bool; LANES] {
+        let mut contains = [false; LANES];
+        match *self {
+            Self::Sphere { center, radius } => {
+                for (i, contains) in contains.iter_mut().enumerate() {
+                    *contains = vector(points, i).distance_squared(center) <= radius * radius;
+                }
+            }
+            Self::Box { min, max } => {
+                for (i, contains) in contains.iter_mut().enumerate() {
+                    let [x, y, z] = vector(points, i).to_array();
+                    *contains = (x >= min.x)
+                        & (y >= min.y)
+                        & (z >= min.z)
+                        & (x <= max.x)
+                        & (y <= max.y)
+                        & (z <= max.z);
+                }
+            }
+        }
+        contains
+    }
+
     /// The corners of the box along the axes around the bounds: least and greatest coordinates \[length\].
     #[must_use]
     pub fn corners(&self) -> (DVec3, DVec3) {

@@ -66,6 +66,12 @@ pub trait Medium {
 pub trait LineThickness: Medium {
     /// ∫ σ_t ds over `from ≤ s ≤ to` on a line in the medium's own coordinates \[1\].
     fn line_thickness(&self, local: &Line, from: f64, to: f64) -> f64;
+
+    /// The extinction of a medium that has the same everywhere: then a line thickness is that times `to - from` \[1/length\].
+    #[inline(always)]
+    fn everywhere(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// A medium that knows where it is not smooth along a line.
@@ -107,6 +113,10 @@ macro_rules! behind_a_pointer {
         impl<M: LineThickness + ?Sized> LineThickness for $pointer {
             fn line_thickness(&self, local: &Line, from: f64, to: f64) -> f64 {
                 (**self).line_thickness(local, from, to)
+            }
+            #[inline(always)]
+            fn everywhere(&self) -> Option<f64> {
+                (**self).everywhere()
             }
         }
 

@@ -123,6 +123,10 @@ impl<M: LineThickness> LineThickness for Observed<M> {
     fn line_thickness(&self, local: &Line, from: f64, to: f64) -> f64 {
         self.medium.line_thickness(local, from, to)
     }
+    #[inline(always)]
+    fn everywhere(&self) -> Option<f64> {
+        self.medium.everywhere()
+    }
 }
 
 impl<M: MediumBreakpoints> MediumBreakpoints for Observed<M> {

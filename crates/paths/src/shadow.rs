@@ -14,6 +14,12 @@ use glam::DVec3;
 pub trait RayTransmittance<M> {
     /// Draws one estimate \[1\].
     fn estimate(&mut self, ray: &Ray<&M>, source: &mut impl UniformSource) -> f64;
+
+    /// The extinction σ_t of a medium for all of whose rays the estimate is exp(−(σ_t · length)), without a variate \[1/length\].
+    #[inline(always)]
+    fn everywhere(&self, _medium: &M) -> Option<f64> {
+        None
+    }
 }
 
 /// Ratio tracking at any sampling extinction in space: the double particle model without control
@@ -38,6 +44,10 @@ impl<M: LineThickness> RayTransmittance<M> for Regular {
     #[inline]
     fn estimate(&mut self, ray: &Ray<&M>, _source: &mut impl UniformSource) -> f64 {
         exp(-ray.optical_thickness(0.0, ray.length()))
+    }
+    #[inline(always)]
+    fn everywhere(&self, medium: &M) -> Option<f64> {
+        medium.everywhere()
     }
 }
 

@@ -2,17 +2,17 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fairflight_collision::{Albedo, DoubleParticle, SingleParticle, Version};
+use fairflight_elementary::InstructionSet;
 use fairflight_media::{
     AnalyticCosine, Bounded, Clip, Constant, Extinction, Line, Perlin, PerlinParameters, Ray, Vacuum,
 };
 use fairflight_sources::Seeded;
-use fairflight_transmittance::lockstep::{Batches, Fill, Lockstep};
+use fairflight_transmittance::lockstep::{Batches, Lockstep, fill_by};
 use fairflight_transmittance::{
     Comb, CombShape, Jackknife, JitteredRatio, Offset, RayMarching, Roulette, Telescoping, Tracking,
     UnbiasedRayMarching, Woodcock,
 };
 use glam::{DVec3, dvec3};
-use pulp::WithSimd;
 
 const LANES: usize = 16;
 const ESTIMATES: usize = 256;
@@ -25,13 +25,11 @@ fn compare<F: Extinction, E: Lockstep<F>>(criterion: &mut Criterion, name: &str,
     let mut estimates = vec![[0.0; ESTIMATES]; LANES];
     let mut slices = estimates.iter_mut().map(<[f64; ESTIMATES]>::as_mut_slice);
     let mut slices: [&mut [f64]; LANES] = std::array::from_fn(|_| slices.next().unwrap());
-    let mut in_lanes = |run: &dyn Fn(Fill<'_, '_, '_, F, E>)| {
-        let mut batches = Batches::new(&mut slices, None);
-        run(Fill { estimator, field, seeds, batches: &mut batches });
-        batches.lookups().iter().sum::<u64>()
+    let mut in_lanes = |set| {
+        let lookups = fill_by(set, (estimator, field), seeds, &mut Batches::new(&mut slices, None));
+        lookups.iter().sum::<u64>()
     };
-    let common = |fill: Fill<'_, '_, '_, F, E>| fill.with_simd(pulp::Scalar::new());
-    let lookups = in_lanes(&common);
+    let lookups = in_lanes(InstructionSet::Common);
     let mut group = criterion.benchmark_group(name);
     group.throughput(Throughput::Elements(lookups));
     group.bench_function("one after the other", |bencher| {
@@ -44,21 +42,8 @@ fn compare<F: Extinction, E: Lockstep<F>>(criterion: &mut Criterion, name: &str,
             sum
         });
     });
-    group.bench_function("in lanes, the common set", |bencher| bencher.iter(|| in_lanes(&common)));
-    #[cfg(target_arch = "x86_64")]
-    {
-        use pulp::Simd;
-        use pulp::x86::{V3, V4};
-        if let Some(v3) = V3::try_new() {
-            group.bench_function("in lanes, AVX2", |bencher| {
-                bencher.iter(|| in_lanes(&|fill| Simd::vectorize(v3, fill)));
-            });
-        }
-        if let Some(v4) = V4::try_new() {
-            group.bench_function("in lanes, AVX-512", |bencher| {
-                bencher.iter(|| in_lanes(&|fill| Simd::vectorize(v4, fill)));
-            });
-        }
+    for set in InstructionSet::of_this_machine() {
+        group.bench_function(format!("in lanes, {}", set.name()), |bencher| bencher.iter(|| in_lanes(set)));
     }
     group.finish();
 }

@@ -1,12 +1,14 @@
 //! Gathering: what virtual point lights add at a vertex (engelhardt-2013 section 3.3).
 
 use crate::Vpl;
+use fairflight_elementary::InstructionSet;
 use fairflight_media::Line;
 use fairflight_paths::extend::PathSampling;
 use fairflight_paths::transport::{Scattered, Types, Vertex, World};
 use fairflight_paths::{Heuristic, Walk};
 use fairflight_scene::{Geometry, Segment, Spectrum};
 use fairflight_sources::UniformSource;
+use glam::DVec3;
 use std::fmt;
 
 /// Part of the geometric term G that a connection takes.
@@ -77,7 +79,20 @@ impl<W: Types> fmt::Debug for Gather<'_, W> {
     }
 }
 
+/// The segment from one vertex to another.
+#[inline(always)]
+pub(crate) fn connection(y: &Vertex, to: &Vertex, direction: DVec3, length: f64) -> Segment {
+    Segment { line: Line { origin: y.position, direction }, length, from: y.surface(), to: to.surface() }
+}
+
 impl<W: Types> Gather<'_, W> {
+    /// True if both ends lie on one plane, which does not light itself; the cosines say so but for rounding.
+    #[inline(always)]
+    pub(crate) fn is_on_one_plane(&self, segment: &Segment) -> bool {
+        let is_closed = |index: usize| self.world.surfaces.surfaces()[index].shape.is_closed();
+        segment.from == segment.to && segment.from.is_some_and(|index| !is_closed(index))
+    }
+
     /// The contribution of one virtual point light.
     #[inline]
     pub fn one(&mut self, y: &Vertex, index: usize, source: &mut impl UniformSource) -> W::Spectrum {
@@ -95,16 +110,10 @@ impl<W: Types> Gather<'_, W> {
         if term == 0.0 {
             return W::Spectrum::ZERO;
         }
-        let (from, to) = (y.surface(), vpl.vertex.surface());
-        let surfaces = self.world.surfaces.surfaces();
-        // A plane does not light itself; the cosines say so but for rounding.
-        if from == to
-            && let Some(index) = from
-            && !surfaces[index].shape.is_closed()
-        {
+        let segment = connection(y, &vpl.vertex, direction, distance);
+        if self.is_on_one_plane(&segment) {
             return W::Spectrum::ZERO;
         }
-        let segment = Segment { line: Line { origin: y.position, direction }, length: distance, from, to };
         let visibility = self.world.attenuated_visibility(&segment, &mut self.shadow, source);
         if visibility == 0.0 {
             return W::Spectrum::ZERO;
@@ -125,13 +134,7 @@ impl<W: Types> Gather<'_, W> {
         match which {
             Connected::Nothing => W::Spectrum::ZERO,
             Connected::One(index) => self.one(y, index, source),
-            Connected::All => {
-                let mut sum = W::Spectrum::ZERO;
-                for index in 0..self.vpls.len() {
-                    sum += self.one(y, index, source);
-                }
-                sum
-            }
+            Connected::All => self.all_by(InstructionSet::widest(), y, source),
         }
     }
 
@@ -195,7 +198,7 @@ mod tests {
     use fairflight_media::PhaseFunction;
     use fairflight_scene::{Material, Source};
     use fairflight_sources::Scripted;
-    use glam::{DVec3, dvec3};
+    use glam::dvec3;
     use std::f64::consts::{FRAC_1_PI, PI};
 
     const WHOLE: Term = Term::Bounded(f64::INFINITY);

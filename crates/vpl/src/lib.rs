@@ -49,6 +49,7 @@ mod gather;
 mod integrator;
 mod keep_near;
 mod light_paths;
+mod lockstep;
 mod vpl;
 
 pub use fairflight_paths::transport::{Emitters, Ledger};

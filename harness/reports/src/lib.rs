@@ -18,6 +18,7 @@ mod run;
 mod scenes;
 mod single_scattering;
 mod speed;
+mod speed_against_error;
 mod stability;
 mod standard;
 mod virtual_lights;

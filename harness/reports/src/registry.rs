@@ -2,7 +2,7 @@
 
 use super::run::{Finished, Run};
 use super::{
-    bidirectional, estimators, free_flight, metropolis, particle_tracing, single_scattering, standard,
+    bidirectional, estimators, free_flight, metropolis, particle_tracing, single_scattering, speed, standard,
     virtual_lights,
 };
 use fairflight_harness::Failure;
@@ -22,7 +22,7 @@ pub struct ReportKind {
 }
 
 /// All reports; the first is the default.
-pub const REPORTS: [ReportKind; 8] = [
+pub const REPORTS: [ReportKind; 9] = [
     ReportKind {
         name: "standard",
         about: "transmittance estimators against their closed forms",
@@ -78,6 +78,13 @@ pub const REPORTS: [ReportKind; 8] = [
         takes_volume: true,
         takes: ["3.8 min", "14 s"],
         study: |run| Finished::of(estimators::document(run)?),
+    },
+    ReportKind {
+        name: "speed",
+        about: "look-ups, walks, connections and images per second, beside the parts that they cannot do without",
+        takes_volume: false,
+        takes: ["20 s", "4 s"],
+        study: |run| Finished::of(speed::document(run)?),
     },
 ];
 

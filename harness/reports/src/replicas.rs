@@ -32,7 +32,7 @@ impl Subject {
     pub(super) fn gray(text: &str, resolution: [u32; 2]) -> Result<Self, Failure> {
         let mut scene: Value = serde_json::from_str(text)
             .map_err(|error| Failure::refused(format!("a scene of the report: {error}")))?;
-        for surface in scene["surfaces"].as_array_mut().into_iter().flatten() {
+        for surface in scene.get_mut("surfaces").and_then(Value::as_array_mut).into_iter().flatten() {
             // Smooth surfaces have none, and must not get one.
             let Some(reflectance) = surface["material"].get_mut("reflectance") else { continue };
             if let Some(rgb) = reflectance.as_array() {

@@ -95,4 +95,11 @@ impl<M: LineThickness> RayTransmittance<M> for ShadowWorker<'_> {
             Self::Sampled(worker) => worker.estimate(ray, source),
         }
     }
+    #[inline]
+    fn everywhere(&self, medium: &M) -> Option<f64> {
+        match self {
+            Self::Regular(_) => medium.everywhere(),
+            Self::Sampled(_) => None,
+        }
+    }
 }

@@ -41,6 +41,17 @@ impl PhaseFunction for AnyPhase {
         }
     }
 
+    #[inline(always)]
+    fn eval_lanes(&self, cosines: &Lanes) -> Lanes {
+        match self {
+            Self::Isotropic(phase) => phase.eval_lanes(cosines),
+            Self::Rayleigh(phase) => phase.eval_lanes(cosines),
+            Self::HenyeyGreenstein(phase) => phase.eval_lanes(cosines),
+            Self::Schlick(phase) => phase.eval_lanes(cosines),
+            Self::Tabulated(phase) => phase.eval_lanes(cosines),
+        }
+    }
+
     #[inline]
     fn sample_cosine(&self, u: f64) -> f64 {
         match self {

@@ -31,7 +31,7 @@ impl HenyeyGreenstein {
 }
 
 impl PhaseFunction for HenyeyGreenstein {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, cosine: f64) -> f64 {
         // A scalar product of unit vectors may be 1 + 1e-16, which the peak of |g| near 1 would notice.
         let cosine = cosine.clamp(-1.0, 1.0);

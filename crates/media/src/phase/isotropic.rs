@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 pub struct Isotropic;
 
 impl PhaseFunction for Isotropic {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, _cosine: f64) -> f64 {
         1.0 / (4.0 * PI)
     }

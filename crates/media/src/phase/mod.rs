@@ -29,6 +29,16 @@ pub trait PhaseFunction {
     /// The phase function, which is also the density per solid angle of [`sample`](Self::sample) \[1/sr\].
     fn eval(&self, cosine: f64) -> f64;
 
+    /// The phase function in all lanes, each with the bits of [`eval`](Self::eval).
+    #[inline(always)]
+    fn eval_lanes(&self, cosines: &Lanes) -> Lanes {
+        let mut values = [0.0; LANES];
+        for i in 0..LANES {
+            values[i] = self.eval(cosines[i]);
+        }
+        values
+    }
+
     /// The cosine of the angle of deflection, by inversion of its distribution; increasing or decreasing in `u`, finite and
     /// within \[−1, 1\] for every `u` in \[0, 1).
     fn sample_cosine(&self, u: f64) -> f64;
@@ -76,6 +86,10 @@ impl<P: PhaseFunction + ?Sized> PhaseFunction for &P {
     #[inline]
     fn eval(&self, cosine: f64) -> f64 {
         (**self).eval(cosine)
+    }
+    #[inline(always)]
+    fn eval_lanes(&self, cosines: &Lanes) -> Lanes {
+        (**self).eval_lanes(cosines)
     }
     #[inline]
     fn sample_cosine(&self, u: f64) -> f64 {

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 pub struct Rayleigh;
 
 impl PhaseFunction for Rayleigh {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, cosine: f64) -> f64 {
         3.0 / (16.0 * PI) * (1.0 + cosine * cosine)
     }

@@ -29,7 +29,7 @@ impl Schlick {
 const LARGE: f64 = 0.5;
 
 impl PhaseFunction for Schlick {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, cosine: f64) -> f64 {
         let cosine = cosine.clamp(-1.0, 1.0);
         let (back, front) = (1.0 - self.k, 1.0 + self.k);

@@ -10,6 +10,7 @@ mod flights;
 use crate::{ParticleTracer, SamplingExtinction};
 use fairflight_collision::SingleParticle;
 use fairflight_elementary::lanes::LANES;
+use fairflight_elementary::{InstructionSet, LaneWork};
 use fairflight_media::lanes::{set_vector, splat, vector};
 use fairflight_media::{Clip, Line, Medium, PhaseFunction, Ray};
 use fairflight_scene::{Camera, Spectrum};
@@ -84,8 +85,20 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> ParticleTr
         streams: &mut [Seeded],
         take: impl FnMut(usize, C),
     ) {
+        self.trace_by(InstructionSet::widest(), camera, (pixels, samples), streams, take);
+    }
+
+    /// Draws as [`trace`](Self::trace), by an instruction set: the same bits on all.
+    pub fn trace_by(
+        &mut self,
+        set: InstructionSet,
+        camera: &Camera,
+        (pixels, samples): (&[[u32; 2]], u32),
+        streams: &mut [Seeded],
+        take: impl FnMut(usize, C),
+    ) {
         debug_assert_eq!(pixels.len(), streams.len(), "a stream for each pixel");
-        pulp::Arch::new().dispatch(Trace { tracer: self, camera, pixels, samples, streams, take });
+        set.run(Trace { tracer: self, camera, pixels, samples, streams, take });
     }
 
     /// Sends importons of the idle lanes on their way, behind all rays that miss the medium. Lanes whose pixel has all its estimates are put to `done`.
@@ -184,7 +197,7 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction> ParticleTr
     }
 }
 
-/// Work of [`ParticleTracer::trace`], as the dispatcher takes it.
+/// Work of [`ParticleTracer::trace_by`].
 struct Trace<'t, 's, M, P, C, R, T> {
     tracer: &'t mut ParticleTracer<'s, M, P, C, R>,
     camera: &'t Camera,
@@ -194,13 +207,13 @@ struct Trace<'t, 's, M, P, C, R, T> {
     take: T,
 }
 
-impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction, T: FnMut(usize, C)> pulp::WithSimd
+impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction, T: FnMut(usize, C)> LaneWork
     for Trace<'_, '_, M, P, C, R, T>
 {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+    fn run(self) {
         let Self { tracer, camera, pixels, samples, streams, mut take } = self;
         if samples == 0 {
             return;

@@ -76,22 +76,11 @@ impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction + Copy> Sce
     fn is_the_same(&self, name: &str) -> Told {
         let expected = self.one_after_the_other();
         let (camera, pixels, samples) = (&self.camera, &pixels(), SAMPLES);
-        let plain = self.told(|tracer, streams, take| {
-            let trace = Trace { tracer, camera, pixels, samples, streams, take };
-            pulp::WithSimd::with_simd(trace, pulp::Scalar::new());
-        });
-        assert_eq!(plain, expected, "{name}: the common instruction set");
-        let best = self.told(|tracer, streams, take| tracer.trace(camera, (pixels, samples), streams, take));
-        assert_eq!(best, expected, "{name}: the best instruction set");
-        #[cfg(target_arch = "x86_64")]
-        {
-            use pulp::Simd;
-            if let Some(v3) = pulp::x86::V3::try_new() {
-                let found = self.told(|tracer, streams, take| {
-                    Simd::vectorize(v3, Trace { tracer, camera, pixels, samples, streams, take });
-                });
-                assert_eq!(found, expected, "{name}: AVX2");
-            }
+        for set in InstructionSet::of_this_machine() {
+            let found = self.told(|tracer, streams, take| {
+                tracer.trace_by(set, camera, (pixels, samples), streams, take);
+            });
+            assert_eq!(found, expected, "{name}: {}", set.name());
         }
         expected
     }

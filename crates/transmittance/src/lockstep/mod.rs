@@ -25,6 +25,7 @@ pub use products::Products;
 
 use crate::TransmittanceEstimator;
 use fairflight_elementary::lanes::Lanes;
+use fairflight_elementary::{InstructionSet, LaneWork};
 use fairflight_media::Extinction;
 use fairflight_sources::SeededLanes;
 
@@ -39,7 +40,7 @@ pub use watched::Watched;
 pub trait Lockstep<F: Extinction>: TransmittanceEstimator<F> {
     /// Fills a slice of estimates from the stream of each lane.
     ///
-    /// Has to be inlined into a function of the instruction set that it shall use: [`fill`].
+    /// Has to be inlined into [`LaneWork::run`], as [`fill`] does.
     fn fill(&self, field: &F, source: &mut SeededLanes, batches: &mut Batches<'_, '_>);
 
     /// True where [`admits`](TransmittanceEstimator::admits) holds in all lanes; where it holds in all, it may be false.
@@ -49,16 +50,14 @@ pub trait Lockstep<F: Extinction>: TransmittanceEstimator<F> {
     }
 }
 
-/// Fills a slice of estimates from the stream of each seed, by the best instruction set that the machine has: the same bits on all. Returns the look-ups of each.
+/// Fills a slice of estimates from the stream of each seed, by the widest instruction set that the machine has. Returns the look-ups of each.
 pub fn fill<F: Extinction, E: Lockstep<F>>(
     estimator: &E,
     field: &F,
     seeds: [u64; LANES],
     estimates: &mut [&mut [f64]; LANES],
 ) -> [u64; LANES] {
-    let mut batches = Batches::new(estimates, None);
-    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, batches: &mut batches });
-    batches.lookups()
+    fill_by(InstructionSet::widest(), (estimator, field), seeds, &mut Batches::new(estimates, None))
 }
 
 /// Fills as [`fill`], and tells the look-ups of each estimate, in slices of the same lengths.
@@ -70,27 +69,33 @@ pub fn fill_and_count<'a, F: Extinction, E: Lockstep<F>>(
     lookups: &mut [&'a mut [f64]; LANES],
 ) {
     let batches = &mut Batches::new(estimates, Some(lookups));
-    pulp::Arch::new().dispatch(Fill { estimator, field, seeds, batches });
+    fill_by(InstructionSet::widest(), (estimator, field), seeds, batches);
 }
 
-/// Work of [`fill`], as the dispatcher takes it.
-#[derive(Debug)]
-pub struct Fill<'a, 'b, 'c, F, E> {
-    /// The estimator.
-    pub estimator: &'a E,
-    /// The field.
-    pub field: &'a F,
-    /// The seed of each lane.
-    pub seeds: [u64; LANES],
-    /// The slices that are filled.
-    pub batches: &'a mut Batches<'b, 'c>,
+/// Fills batches by an instruction set: the same bits on all. Returns the look-ups of each lane.
+pub fn fill_by<F: Extinction, E: Lockstep<F>>(
+    set: InstructionSet,
+    (estimator, field): (&E, &F),
+    seeds: [u64; LANES],
+    batches: &mut Batches<'_, '_>,
+) -> [u64; LANES] {
+    set.run(Fill { estimator, field, seeds, batches });
+    batches.lookups()
 }
 
-impl<F: Extinction, E: Lockstep<F>> pulp::WithSimd for Fill<'_, '_, '_, F, E> {
+/// Work of [`fill_by`].
+struct Fill<'a, 'b, 'c, F, E> {
+    estimator: &'a E,
+    field: &'a F,
+    seeds: [u64; LANES],
+    batches: &'a mut Batches<'b, 'c>,
+}
+
+impl<F: Extinction, E: Lockstep<F>> LaneWork for Fill<'_, '_, '_, F, E> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+    fn run(self) {
         self.estimator.fill(self.field, &mut SeededLanes::new(self.seeds), self.batches);
     }
 }

@@ -12,7 +12,6 @@ use fairflight_media::{
 };
 use fairflight_sources::Seeded;
 use glam::{DVec3, dvec3};
-use pulp::WithSimd;
 
 const SEEDS: [u64; LANES] = [3, 1, 4, 15, 9, 2, 6, 5, 35, 8, 97, 93, 23, 84, 62, 64];
 
@@ -59,26 +58,9 @@ fn is_the_same<F: Extinction, E: Lockstep<F> + for<'a> TransmittanceEstimator<Co
     field: &F,
 ) {
     let expected = one_after_the_other(estimator, field);
-    fn work<'a, 'b, 'c, F, E>(
-        (estimator, field): (&'a E, &'a F),
-        batches: &'a mut Batches<'b, 'c>,
-    ) -> Fill<'a, 'b, 'c, F, E> {
-        Fill { estimator, field, seeds: SEEDS, batches }
-    }
-    let on = (estimator, field);
-    let compare = |found: Found, set: &str| assert!(found == expected, "{name}: {set}");
-    compare(found(|batches| work(on, batches).with_simd(pulp::Scalar::new())), "the common instruction set");
-    compare(found(|batches| pulp::Arch::new().dispatch(work(on, batches))), "the best instruction set");
-    #[cfg(target_arch = "x86_64")]
-    {
-        use pulp::Simd;
-        use pulp::x86::{V3, V4};
-        if let Some(v3) = V3::try_new() {
-            compare(found(|batches| Simd::vectorize(v3, work(on, batches))), "AVX2");
-        }
-        if let Some(v4) = V4::try_new() {
-            compare(found(|batches| Simd::vectorize(v4, work(on, batches))), "AVX-512");
-        }
+    for set in InstructionSet::of_this_machine() {
+        let found = found(|batches| _ = fill_by(set, (estimator, field), SEEDS, batches));
+        assert!(found == expected, "{name}: {}", set.name());
     }
 }
 
@@ -209,7 +191,7 @@ fn what_is_not_lawful_is_seen() {
     let lawful = |field: &Bounded<PiecewiseLinear>, upper_bound| {
         let watched = Watched::new(field, &Woodcock, upper_bound);
         found(|batches| {
-            pulp::Arch::new().dispatch(Fill { estimator: &Woodcock, field: &watched, seeds: SEEDS, batches });
+            fill_by(InstructionSet::widest(), (&Woodcock, &watched), SEEDS, batches);
         });
         watched.all_lawful()
     };
@@ -228,7 +210,8 @@ fn lanes_that_are_mixed_are_told() {
         let expected = one_after_the_other(estimator, field);
         let mut seeds = SEEDS;
         seeds.swap(4, 5);
-        let mixed = found(|batches| pulp::Arch::new().dispatch(Fill { estimator, field, seeds, batches }));
+        let set = InstructionSet::widest();
+        let mixed = found(|batches| _ = fill_by(set, (estimator, field), seeds, batches));
         assert!(mixed != expected);
     }
     let [field, sampling] = [0.9, 0.5].map(|sigma_t| Constant::new(sigma_t, 8.0).unwrap());

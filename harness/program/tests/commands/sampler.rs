@@ -49,7 +49,7 @@ fn points_do_not_move_the_mean() {
 }
 
 /// Over seeds, the squares of the standard errors are the variance of the means: that of 200 normal numbers is known to 10 %, and half as much or as much again
-/// is five of these. The scatter of the points themselves would tell ten times as much.
+/// is five of these. A twin that takes the points for independent samples tells their scatter, that of independent ones, and is refused.
 #[test]
 fn the_error_is_told_by_replicas() {
     let estimator = json!({ "kind": "regular" });
@@ -67,10 +67,13 @@ fn the_error_is_told_by_replicas() {
         }
         [means.sample_variance().unwrap(), told.mean().unwrap()]
     };
-    let [independent, _] = found("independent");
+    let is_told = |variance: f64, told: f64| (variance / told - 1.0).abs() < 0.5;
+    let [independent, scatter] = found("independent");
+    assert!(is_told(independent, scatter), "{independent} where {scatter} is told");
     for sampler in ["sobol", "halton"] {
         let [variance, told] = found(sampler);
-        assert!((variance / told - 1.0).abs() < 0.5, "{sampler}: {variance} where {told} is told");
+        assert!(is_told(variance, told), "{sampler}: {variance} where {told} is told");
+        assert!(!is_told(variance, scatter), "{sampler}: points taken for independent samples");
         assert!(variance < 0.4 * independent, "{sampler}: {variance}, independent samples {independent}");
     }
 }

@@ -3,7 +3,7 @@
 use super::equal_cost::EqualCost;
 use super::versions::{Sweep, Versions};
 use crate::measured::with_range;
-use crate::speed::Speed;
+use crate::speed_against_error::Speed;
 use fairflight_document::{Claim, ClaimVerdict};
 
 /// S5: beyond the greatest extinction the variance does not fall, look-ups grow, and the best figure of merit is below it.

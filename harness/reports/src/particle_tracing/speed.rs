@@ -2,7 +2,7 @@
 
 use super::scenes;
 use crate::run::Run;
-use crate::speed::{Speed, compare};
+use crate::speed_against_error::{Speed, compare};
 use fairflight_harness::Failure;
 use serde_json::{Value, json};
 

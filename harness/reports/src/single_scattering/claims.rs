@@ -3,7 +3,7 @@
 use super::POINT;
 use super::equal_cost::{Budget, Study};
 use crate::measured::Measured;
-use crate::speed::Speed;
+use crate::speed_against_error::Speed;
 use fairflight_document::{Claim, ClaimVerdict, measured};
 
 /// What the names of the methods that S9 says win begin with: they differ in the number of samples per ray.

@@ -3,7 +3,7 @@
 use super::POINT;
 use super::methods::{self, Method};
 use crate::run::Run;
-use crate::speed::{Speed, compare};
+use crate::speed_against_error::{Speed, compare};
 use fairflight_harness::Failure;
 
 /// Camera rays per pixel of the points of a curve.
