@@ -41,29 +41,28 @@ impl Row {
         (units, walks): (f64, f64),
         loops: Loops<'_>,
     ) -> Result<Self, Failure> {
-        let (mut bare, mut one_by_one) = (Vec::new(), Vec::new());
+        let Loops { bare, one_by_one, in_lanes } = loops;
         let sets: Vec<InstructionSet> = InstructionSet::of_this_machine().collect();
-        let mut lanes = vec![Vec::new(); sets.len()];
+        let mut seconds = vec![Vec::new(); 2 + sets.len()];
         // The first round fills caches, and counts for nothing.
         for round in 0..=run.quick_or(3, 15) {
             interrupt::check()?;
-            let times = [time(loops.bare), time(loops.one_by_one)];
-            let in_lanes: Vec<f64> = sets.iter().map(|&set| time(&mut || (loops.in_lanes)(set))).collect();
+            let mut times = vec![time(bare), time(one_by_one)];
+            times.extend(sets.iter().map(|&set| time(&mut || in_lanes(set))));
             if round > 0 {
-                bare.push(times[0]);
-                one_by_one.push(times[1]);
-                lanes.iter_mut().zip(in_lanes).for_each(|(all, seconds)| all.push(seconds));
+                seconds.iter_mut().zip(times).for_each(|(all, seconds)| all.push(seconds));
             }
         }
         run.advance();
+        let (bare, one_by_one, lanes) = (&seconds[0], &seconds[1], &seconds[2..]);
         let nanoseconds = |seconds: &[f64]| Measured::positive(&scaled(seconds, 1e9 / units));
         Ok(Self {
             name: name.into(),
             per_walk: units / walks,
-            bare: nanoseconds(&bare),
-            one_by_one: nanoseconds(&one_by_one),
-            over_bare: ratio(&one_by_one, &bare),
-            gains: lanes.iter().map(|seconds: &Vec<f64>| ratio(&one_by_one, seconds)).collect(),
+            bare: nanoseconds(bare),
+            one_by_one: nanoseconds(one_by_one),
+            over_bare: ratio(one_by_one, bare),
+            gains: lanes.iter().map(|seconds| ratio(one_by_one, seconds)).collect(),
         })
     }
 

@@ -1,30 +1,20 @@
-//! Rate at which a core gathers virtual point lights, and the price that surfaces and medium pay for each other.
-//!
-//! `cargo bench --bench connections` measures with criterion, and then prints ratios of two loops that ran in turn within this run.
+//! The price that surfaces and medium pay for each other: `cargo bench --bench surfaces` prints ratios of two loops that ran in turn within this run.
 
-use criterion::{BenchmarkId, Criterion, Throughput};
 use fairflight_collision::Version;
 use fairflight_media::phase::HenyeyGreenstein;
 use fairflight_media::{Bounds, EmptySpace, Homogeneous, Line, Medium};
-use fairflight_paths::transport::{Lobe, Types, Vertex, World};
+use fairflight_paths::transport::World;
 use fairflight_paths::{Heuristic, Integrator, ParticleTracer, PathTracer, Ratio, Uniform, Walk};
 use fairflight_scene::surface::{Rectangle, Sphere};
 use fairflight_scene::{
     Background, Geometry, Lights, Material, NoSurfaces, Shape, Surface, Surfaces, Volume,
 };
 use fairflight_sources::{Seeded, UniformSource};
-use fairflight_transmittance::Regular;
-use fairflight_vpl::{Connected, Emitters, Gather, Ledger, LightPaths, Term, Vpl};
 use glam::{DVec3, dvec3};
 use std::hint::black_box;
 use std::time::Instant;
 
 const SIGMA_T: f64 = 0.35;
-const BOUND: f64 = 20.0;
-/// Light paths.
-const PATHS: u32 = 200;
-/// Points that are connected with all lights.
-const POINTS: usize = 100;
 /// Paths per timed loop.
 const RAYS: u64 = 10_000;
 
@@ -63,34 +53,6 @@ fn walk() -> Walk<Uniform> {
     Walk::new(Version::NonTerminating, Uniform::new(SIGMA_T).expect("positive"))
 }
 
-/// Points in the haze.
-fn points(source: &mut Seeded) -> Vec<Vertex> {
-    let coordinate = |source: &mut Seeded, low: f64, high: f64| low + (high - low) * source.next_uniform();
-    (0..POINTS)
-        .map(|_| {
-            let position = dvec3(
-                coordinate(source, -2.4, 2.4),
-                coordinate(source, 0.3, 1.2),
-                coordinate(source, -2.4, 2.4),
-            );
-            Vertex { position, lobe: Lobe::Phase { incident: DVec3::Z } }
-        })
-        .collect()
-}
-
-/// Connects every point with every light.
-fn connect<W: Types<Spectrum = f64, Sampling = Uniform>>(
-    world: World<'_, W>,
-    vpls: &[Vpl<f64>],
-    points: &[Vertex],
-    shadow: W::Shadow,
-) -> f64 {
-    let term = Term::Bounded(BOUND);
-    let mut gather = Gather { world, vpls, term, heuristic: Heuristic::Balance, walk: walk(), shadow };
-    let mut source = Seeded::new(1);
-    points.iter().map(|point| gather.connected(point, Connected::All, &mut source)).sum()
-}
-
 fn time(work: &mut dyn FnMut() -> f64) -> f64 {
     let start = Instant::now();
     black_box(work());
@@ -102,38 +64,6 @@ fn ratio(mut ours: impl FnMut() -> f64, mut theirs: impl FnMut() -> f64) -> f64 
     let mut ratios: Vec<f64> = (0..41).map(|_| time(&mut ours) / time(&mut theirs)).collect();
     ratios.sort_unstable_by(f64::total_cmp);
     ratios[ratios.len() / 2]
-}
-
-fn connections(criterion: &mut Criterion) {
-    let (volume, surfaces) = (haze(homogeneous()), spheres());
-    let lights = Lights { background: Background::dark(), sources: Vec::new() };
-    let world = World::new(&volume, &surfaces, &lights);
-    let emitters = Emitters::new(&lights, &surfaces, world.enclosing_ball(), dvec3(0.0, 0.6, -4.5));
-    let paths = LightPaths::new(world, &emitters, walk());
-    let mut source = Seeded::new(1);
-    let (mut vpls, mut ledger) = (Vec::new(), Ledger::empty());
-    for _ in 0..PATHS {
-        paths.trace(1.0 / f64::from(PATHS), &mut ledger, &mut source, |vpl| vpls.push(vpl));
-    }
-    let points = points(&mut source);
-    let empty = World::new(&volume, &NoSurfaces, &lights);
-    let count = (vpls.len() * points.len()) as u64;
-
-    let mut group = criterion.benchmark_group("connections");
-    group.sample_size(20).throughput(Throughput::Elements(count));
-    group.bench_function(BenchmarkId::new("haze", "no surfaces"), |b| {
-        b.iter(|| connect(empty, &vpls, &points, Regular));
-    });
-    group.bench_function(BenchmarkId::new("haze", "six surfaces"), |b| {
-        b.iter(|| connect(world, &vpls, &points, Regular));
-    });
-    group.finish();
-    let seconds = (0..21).map(|_| time(&mut || connect(world, &vpls, &points, Regular)));
-    let least = seconds.fold(f64::INFINITY, f64::min);
-    println!(
-        "haze among six surfaces: {:.1} million connections per second and core",
-        1e-6 * count as f64 / least
-    );
 }
 
 /// Paths from in front of the haze.
@@ -163,7 +93,7 @@ fn trace(tracer: &mut impl Integrator<f64>) -> f64 {
         .sum()
 }
 
-fn who_pays() {
+fn main() {
     let (volume, surfaces) = (haze(homogeneous()), spheres());
     let particles = || {
         let lights = even();
@@ -182,11 +112,4 @@ fn who_pays() {
         "surfaces without a medium / in a medium of extinction 0 = {:.2}",
         ratio(|| paths(&empty, &surfaces), || paths(&thin, &surfaces))
     );
-}
-
-fn main() {
-    let mut criterion = Criterion::default().without_plots().configure_from_args();
-    connections(&mut criterion);
-    who_pays();
-    criterion.final_summary();
 }
