@@ -1,23 +1,21 @@
 //! Connections with virtual point lights in even haze, over the parts of a connection alone.
 
+use super::haze::{SIGMA_T, haze, homogeneous, spheres, walk};
 use super::in_turn::{Loops, Row};
 use crate::run::Run;
-use fairflight_collision::Version;
 use fairflight_document::Table;
 use fairflight_elementary::{InstructionSet, exp};
 use fairflight_harness::Failure;
+use fairflight_media::PhaseFunction;
 use fairflight_media::phase::HenyeyGreenstein;
-use fairflight_media::{Bounds, Homogeneous, PhaseFunction};
 use fairflight_paths::transport::{Lobe, Types, Vertex, World};
-use fairflight_paths::{Heuristic, Uniform, Walk};
-use fairflight_scene::surface::{Rectangle, Sphere};
-use fairflight_scene::{Background, Lights, Material, NoSurfaces, Shape, Surface, Surfaces, Volume};
+use fairflight_paths::{Heuristic, Uniform};
+use fairflight_scene::{Background, Lights, NoSurfaces};
 use fairflight_sources::{Seeded, UniformSource};
 use fairflight_transmittance::Regular;
 use fairflight_vpl::{Emitters, Gather, Ledger, LightPaths, Term, Vpl};
 use glam::{DVec3, dvec3};
 
-const SIGMA_T: f64 = 0.35;
 /// Greatest geometric term \[1/length²\].
 const BOUND: f64 = 20.0;
 /// Light paths.
@@ -26,26 +24,6 @@ const PATHS: u32 = 200;
 const POINTS: usize = 100;
 
 pub(super) const STEPS: u64 = 2;
-
-/// A floor, a wall, three spheres and a lamp.
-fn spheres() -> Surfaces<f64> {
-    let diffuse = Material::Diffuse { reflectance: 0.6 };
-    let surface = |shape, emission| Surface::new(shape, diffuse, emission).expect("lawful");
-    let rectangle = |corner, u, v| Shape::Rectangle(Rectangle::new(corner, u, v).expect("not flat"));
-    let sphere = |center, radius| Shape::Sphere(Sphere::new(center, radius).expect("not empty"));
-    Surfaces::new(vec![
-        surface(rectangle(dvec3(-2.5, -1.0, -2.5), 5.0 * DVec3::X, 5.0 * DVec3::Z), 0.0),
-        surface(rectangle(dvec3(-2.5, -1.0, 2.5), 5.0 * DVec3::X, 3.0 * DVec3::Y), 0.0),
-        surface(sphere(dvec3(-0.95, -0.4, 0.4), 0.6), 0.0),
-        surface(sphere(dvec3(0.15, -0.55, -0.5), 0.45), 0.0),
-        surface(sphere(dvec3(1.15, -0.4, 0.3), 0.6), 0.0),
-        surface(sphere(dvec3(0.2, 1.5, 0.2), 0.25), 30.0),
-    ])
-}
-
-fn walk() -> Walk<Uniform> {
-    Walk::new(Version::NonTerminating, Uniform::new(SIGMA_T).expect("positive"))
-}
 
 /// Points in the haze.
 fn points(source: &mut Seeded) -> Vec<Vertex> {
@@ -87,10 +65,7 @@ fn bare(phase: &HenyeyGreenstein, (vpls, points): (&[Vpl<f64>], &[Vertex])) -> f
 }
 
 pub(super) fn study(run: &Run<'_>) -> Result<Vec<Row>, Failure> {
-    let bounds = Bounds::aligned_box(dvec3(-2.5, -1.0, -2.5), dvec3(2.5, 2.0, 2.5)).expect("a box");
-    let phase = HenyeyGreenstein::new(0.3).expect("within ±1");
-    let medium = Homogeneous::new(SIGMA_T).expect("finite");
-    let volume = Volume { medium, bounds, albedo: 0.98, phase };
+    let volume = haze(homogeneous(SIGMA_T));
     let surfaces = spheres();
     let lights = Lights { background: Background::dark(), sources: Vec::new() };
     let world = World::new(&volume, &surfaces, &lights);
@@ -107,7 +82,7 @@ pub(super) fn study(run: &Run<'_>) -> Result<Vec<Row>, Failure> {
     let size = ((vpls.len() * points.len()) as f64, points.len() as f64);
     let row = |name: &str, connect: &dyn Fn(Option<InstructionSet>) -> f64| {
         let loops = Loops {
-            bare: &mut || bare(&phase, pairs),
+            bare: &mut || bare(&volume.phase, pairs),
             one_by_one: &mut || connect(None),
             in_lanes: &mut |set| connect(Some(set)),
         };

@@ -43,17 +43,11 @@ impl Row {
     ) -> Result<Self, Failure> {
         let Loops { bare, one_by_one, in_lanes } = loops;
         let sets: Vec<InstructionSet> = InstructionSet::of_this_machine().collect();
-        let mut seconds = vec![Vec::new(); 2 + sets.len()];
-        // The first round fills caches, and counts for nothing.
-        for round in 0..=run.quick_or(3, 15) {
-            interrupt::check()?;
+        let seconds = in_turn(run, || {
             let mut times = vec![time(bare), time(one_by_one)];
             times.extend(sets.iter().map(|&set| time(&mut || in_lanes(set))));
-            if round > 0 {
-                seconds.iter_mut().zip(times).for_each(|(all, seconds)| all.push(seconds));
-            }
-        }
-        run.advance();
+            times
+        })?;
         let (bare, one_by_one, lanes) = (&seconds[0], &seconds[1], &seconds[2..]);
         let nanoseconds = |seconds: &[f64]| Measured::positive(&scaled(seconds, 1e9 / units));
         Ok(Self {
@@ -100,6 +94,24 @@ impl Row {
             "{work} costs {low:.2} to {high:.2} times its bare parts; in lanes, by the widest set, it is {least:.2} to {most:.2} times as fast."
         )
     }
+}
+
+/// CPU seconds of some loops in each round, by loop.
+fn in_turn(run: &Run<'_>, mut round: impl FnMut() -> Vec<f64>) -> Result<Vec<Vec<f64>>, Failure> {
+    // The first round fills caches, and counts for nothing.
+    let mut seconds = vec![Vec::new(); round().len()];
+    for _ in 0..run.quick_or(3, 15) {
+        interrupt::check()?;
+        seconds.iter_mut().zip(round()).for_each(|(all, seconds)| all.push(seconds));
+    }
+    run.advance();
+    Ok(seconds)
+}
+
+/// The mean ratio of the times of two loops that run in turn.
+pub(super) fn compare(run: &Run<'_>, a: Loop<'_>, b: Loop<'_>) -> Result<Measured, Failure> {
+    let seconds = in_turn(run, || vec![time(a), time(b)])?;
+    Ok(ratio(&seconds[0], &seconds[1]))
 }
 
 fn time(work: Loop<'_>) -> f64 {

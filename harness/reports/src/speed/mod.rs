@@ -2,9 +2,11 @@
 
 mod connections;
 mod estimators;
+mod haze;
 mod images;
 mod in_turn;
 mod media;
+mod surfaces;
 mod walks;
 
 use crate::run::Run;
@@ -15,12 +17,14 @@ use in_turn::Row;
 
 /// Measures the report, one loop at a time.
 pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
-    run.expect(media::STEPS + estimators::STEPS + walks::STEPS + connections::STEPS + images::STEPS);
+    let walked = walks::STEPS + connections::STEPS + surfaces::STEPS;
+    run.expect(media::STEPS + estimators::STEPS + walked + images::STEPS);
     let media = media::study(run)?;
     let length = media::lengths(run)?;
     let estimators = estimators::study(run)?;
     let walks = walks::study(run)?;
     let connections = connections::study(run)?;
+    let surfaces = surfaces::study(run)?;
     let images = images::study(run)?;
     let summary = vec![
         Row::finding("A look-up of ratio tracking", &media),
@@ -40,7 +44,7 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
             Section::new("media", "Look-ups, by medium").with(text).with(media::table(&media)).with(length),
             Section::new("estimators", "Look-ups, by estimator").with(estimators::table(&estimators)),
             Section::new("walks", "Walks").with(walks::table(&walks)),
-            Section::new("connections", "Connections").with(connections::table(&connections)),
+            Section::new("connections", "Connections").with(connections::table(&connections)).with(surfaces),
             Section::new("images", "Images").with(images),
         ],
         hero: Some("length".to_owned()),
