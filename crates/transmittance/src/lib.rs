@@ -25,6 +25,24 @@
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
 //! | [`Jackknife`] | peters-2025 | a biased baseline |
 //!
+//! **Law.** E\[estimate\] = T for every field that the estimator knows enough of (the bounds of its type) and admits
+//! ([`TransmittanceEstimator::admits`]); a biased baseline says so. Its variance is finite where [`Theory`] says it is, and of ratio and residual
+//! ratio tracking it is exp(∫ σ_diff² / σ_samp ds) − 1 in units of T² (szirmay-kalos-2017 eq. 16).
+//!
+//! # Porting
+//!
+//! | estimator | in specs and vectors | what it makes of given variates |
+//! |---|---|---|
+//! | [`Tracking`], double particle: ratio and residual ratio tracking | `double_particle` | `tests/vectors/double_particle.jsonl` |
+//! | [`Woodcock`] | `woodcock` | `tests/vectors/woodcock.jsonl` |
+//! | [`JitteredRatio`] | `jittered_ratio` | `tests/vectors/jittered_ratio.jsonl` |
+//! | [`UnbiasedRayMarching`] | `unbiased_ray_marching` | `tests/vectors/unbiased_ray_marching.jsonl` |
+//!
+//! Of a kind beyond these the file, where there is one, is `tests/vectors/KIND.jsonl` as well. The page `docs/PORTING.md` has the loop of each in
+//! pseudo-code, what it must know, the precision that it bears, and its traps with the bias that each makes. `harness check-port COMMAND` holds a
+//! program in any language to the vectors and names the mistake that it sees; ports that pass, to C++, Python and WGSL among others, are in
+//! `tests/ports`.
+//!
 //! ```
 //! use fairflight_collision::{Albedo, DoubleParticle};
 //! use fairflight_media::{Constant, PiecewiseLinear, Vacuum};
