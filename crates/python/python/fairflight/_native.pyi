@@ -1,20 +1,24 @@
 """Types of the native part."""
 
 from collections.abc import Callable, Sequence
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Floats = NDArray[np.float64]
+_Floats = NDArray[np.float64]
 
+__all__ = ["Draws", "Law", "Profile", "Verdict", "draw", "judge", "moments"]
+
+@final
 class Profile:
     def __new__(
         cls,
-        sigma_t: Callable[[float], float] | Callable[[Floats], ArrayLike],
+        sigma_t: Callable[[float], float] | Callable[[_Floats], ArrayLike],
         length: float,
         *,
         majorant: float | None = None,
-        breakpoints: Sequence[float] = (),
+        breakpoints: Sequence[float] = ...,
         vectorised: bool = False,
     ) -> Profile: ...
     @staticmethod
@@ -27,9 +31,10 @@ class Profile:
     def majorant(self) -> float | None: ...
     def sigma_t(self, s: float) -> float: ...
 
+@final
 class Draws:
     @property
-    def values(self) -> Floats: ...
+    def values(self) -> _Floats: ...
     @property
     def lookups(self) -> float: ...
     @property
@@ -37,6 +42,7 @@ class Draws:
     @property
     def variance(self) -> float | None: ...
 
+@final
 class Law:
     @property
     def transmittance(self) -> float: ...
@@ -59,6 +65,7 @@ class Law:
     @property
     def method(self) -> str: ...
 
+@final
 class Verdict:
     @property
     def sound(self) -> bool | None: ...
