@@ -76,7 +76,7 @@ for axes, what in ((variance, "variance"), (cost, "variance x look-ups")):
     axes.set_xticks([3, 10, 30, 100], ["3", "10", "30", "100"])
     axes.xaxis.set_minor_formatter("")
 variance.annotate("majorant", (cloud.majorant, 0.5), xycoords=("data", "axes fraction"), rotation=90, xytext=(3, 0), textcoords="offset points")
-cost.annotate("dashed: limit as sigma_samp grows", (0.4, 0.93), xycoords="axes fraction", fontsize="small")
+cost.annotate(r"dashed: limit as $\sigma_\mathrm{samp}$ grows", (0.45, 0.93), xycoords="axes fraction", fontsize="small")
 variance.legend(title="curves in closed form, marks drawn\n(hollow: not testable with so few)", fontsize="small", title_fontsize="small")
 
 name = sys.argv[1] if len(sys.argv) > 1 else "which_sigma_samp.png"

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Extinction sigma_t along a ray, from the distance 0 to its length.
 ///
-/// Profile(sigma_t, length, *, majorant=None, breakpoints=(), vectorised=False) takes a callable: sigma_t(s) is the extinction [1/length] at the
+/// Profile(sigma_t, length, *, majorant=None, breakpoints=None, vectorised=False) takes a callable: sigma_t(s) is the extinction [1/length] at the
 /// distance s, a float. A vectorised one gets a one-dimensional numpy array of distances (16 of them, or 1) and returns an array of as many values.
 /// The same distance must always give the same value. `majorant` declares an upper bound, which every look-up checks; `breakpoints` are distances at
 /// which sigma_t or a derivative of it jumps, for the quadratures of
@@ -80,12 +80,12 @@ impl Asked {
 #[pymethods]
 impl Profile {
     #[new]
-    #[pyo3(signature = (sigma_t, length, *, majorant=None, breakpoints=Vec::new(), vectorised=false))]
+    #[pyo3(signature = (sigma_t, length, *, majorant=None, breakpoints=None, vectorised=false))]
     fn new(
         sigma_t: Bound<'_, PyAny>,
         length: f64,
         majorant: Option<f64>,
-        breakpoints: Vec<f64>,
+        breakpoints: Option<Vec<f64>>,
         vectorised: bool,
     ) -> PyResult<Self> {
         let refuse = |reason: String| Err(PyValueError::new_err(reason));
@@ -102,6 +102,7 @@ impl Profile {
         {
             return refuse(format!("profile.{key}: must be a number of at least 0, found {value}"));
         }
+        let breakpoints = breakpoints.unwrap_or_default();
         if let Some(outside) = breakpoints.iter().find(|s| !(**s > 0.0 && **s < length)) {
             return refuse(format!("profile.breakpoints: must lie inside the profile, found {outside}"));
         }

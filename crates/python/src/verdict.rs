@@ -45,11 +45,12 @@ impl Verdict {
 /// What else is known of the law gives the verdict its power, since a sample's own spread is blind to rare large values: the `variance` of one
 /// estimate, or its `central` moments of order 2 to 8 as `moments` gives them (both: the variance counts), a `least` and a `greatest` value, or
 /// `two_valued`, the value of estimates that are that or 0.
-/// `error` bounds the error of the mean that is given. A right estimator is called unsound with a probability of at most `false_alarm`.
+/// `error` bounds the error of the mean that is given. A right estimator is called unsound with a probability of at most `false_alarm`,
+/// by default that of the program, 1e-6.
 ///
 /// Raises ValueError if a number is not lawful.
 #[pyfunction]
-#[pyo3(signature = (estimates, mean, variance=None, *, central=None, error=0.0, least=None, greatest=None, two_valued=None, false_alarm=DEFAULT_ALPHA))]
+#[pyo3(signature = (estimates, mean, variance=None, *, central=None, error=0.0, least=None, greatest=None, two_valued=None, false_alarm=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
 #[expect(clippy::needless_pass_by_value, reason = "arguments from Python are values")]
 pub(crate) fn judge(
@@ -61,9 +62,10 @@ pub(crate) fn judge(
     least: Option<f64>,
     greatest: Option<f64>,
     two_valued: Option<f64>,
-    false_alarm: f64,
+    false_alarm: Option<f64>,
 ) -> PyResult<Verdict> {
     let refuse = |reason: String| Err(PyValueError::new_err(reason));
+    let false_alarm = false_alarm.unwrap_or(DEFAULT_ALPHA);
     if !(false_alarm > 0.0 && false_alarm < 0.5) {
         return refuse(format!("false_alarm: must lie between 0 and 1/2, found {false_alarm}"));
     }

@@ -18,7 +18,7 @@ class Profile:
         length: float,
         *,
         majorant: float | None = None,
-        breakpoints: Sequence[float] = ...,
+        breakpoints: Sequence[float] | None = None,
         vectorised: bool = False,
     ) -> Profile: ...
     @staticmethod
@@ -96,5 +96,5 @@ def judge(
     least: float | None = None,
     greatest: float | None = None,
     two_valued: float | None = None,
-    false_alarm: float = ...,
+    false_alarm: float | None = None,
 ) -> Verdict: ...
