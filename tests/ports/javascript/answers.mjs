@@ -29,8 +29,7 @@ function answer({ id, layer, estimator, sure, profile, knowledge, draws, trace }
   const uniform = () => draw()[1] * 2 ** -53;
   const exponential = () => {
     const [, k, given] = draw();
-    // On a border that no uniform variate reaches there is none.
-    return layer === "uniforms" && k !== null ? -Math.log(1 - k * 2 ** -53) : given;
+    return layer === "uniforms" ? -Math.log(1 - k * 2 ** -53) : given;
   };
   const field = (s) => {
     distances.push(s);
