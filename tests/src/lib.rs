@@ -47,6 +47,18 @@ pub fn files(folder: &str) -> Vec<PathBuf> {
     found
 }
 
+/// Manifests of the packages below a folder, those with a workspace of their own apart.
+///
+/// # Panics
+/// If one cannot be read.
+#[must_use]
+pub fn members(folder: &str) -> Vec<PathBuf> {
+    let is_alone =
+        |path: &PathBuf| fs::read_to_string(path).unwrap().lines().any(|line| line == "[workspace]");
+    let manifests = files(folder).into_iter().filter(|path| path.ends_with("Cargo.toml"));
+    manifests.filter(|path| !is_alone(path)).collect()
+}
+
 /// True if the name of a file ends with one of these extensions.
 #[must_use]
 pub fn has_extension(path: &Path, extensions: &[&str]) -> bool {

@@ -1,6 +1,6 @@
 //! The direction of dependencies between packages, which no compiler checks.
 
-use fairflight_tests::{files, repository};
+use fairflight_tests::{members, repository};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -46,7 +46,7 @@ fn reachable(from: &str) -> BTreeSet<&'static str> {
 
 #[test]
 fn dependencies_point_one_way() {
-    for manifest in files("crates").iter().filter(|path| path.ends_with("Cargo.toml")) {
+    for manifest in &members("crates") {
         let folder = manifest.parent().and_then(Path::file_name).unwrap().to_str().unwrap();
         assert!(ARROWS.iter().any(|(name, _)| *name == folder), "{folder} is not in the design");
         let allowed = reachable(folder);

@@ -92,6 +92,21 @@ fn reviewed_pages_have_all_that_they_link_to() {
     assert!(links > 100, "only {links} links were read");
 }
 
+/// The crates that people port from: their front page leads to the vectors and to the page for ports.
+#[test]
+fn front_pages_lead_to_vectors() {
+    for name in ["sources", "stats", "media", "collision", "transmittance", "freeflight"] {
+        let text = fs::read_to_string(repository().join("crates").join(name).join("src/lib.rs")).unwrap();
+        let page: String = text.lines().take_while(|line| line.starts_with("//!")).collect();
+        assert!(page.contains("**Law.**") || page.contains("law of"), "{name}: no law");
+        assert!(page.contains("`docs/PORTING.md`"), "{name}: no page for ports");
+        let vectors: Vec<&str> = page.split('`').filter(|word| word.starts_with("tests/vectors/")).collect();
+        assert!(!vectors.is_empty(), "{name}: no vectors");
+        let dead = vectors.iter().find(|file| !file.contains("KIND") && !repository().join(file).is_file());
+        assert_eq!(dead, None, "{name}");
+    }
+}
+
 #[test]
 fn a_dead_link_is_found() {
     let page = repository().join("README.md");

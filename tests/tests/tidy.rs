@@ -1,6 +1,6 @@
 //! Invariants of the repository that no compiler checks.
 
-use fairflight_tests::{files, has_extension, repository, sources};
+use fairflight_tests::{files, has_extension, members, repository, sources};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -276,8 +276,7 @@ fn library_crates_can_be_published() {
             "a published crate names versions of those that it builds on: {line}"
         );
     }
-    let manifests = files("crates").into_iter().filter(|path| path.ends_with("Cargo.toml"));
-    for manifest in manifests {
+    for manifest in members("crates") {
         let text = fs::read_to_string(&manifest).unwrap();
         assert!(!text.contains("publish"), "{}", manifest.display());
         for key in ["description = ", "license.workspace", "keywords.workspace", "categories.workspace"] {

@@ -19,6 +19,13 @@
 //!
 //! Transmittance keeps the transmitted branch only; free flight and particle tracing keep both.
 //!
+//! # Porting
+//!
+//! A model is two lines of a port: the walk of `fairflight-transmittance` multiplies its weight by 1 − r at each look-up ([`DoubleParticle`]: ratio
+//! tracking, residual ratio tracking with a control), or ends where u · majorant < σ_t ([`Woodcock`]). What it makes of given variates is in
+//! `tests/vectors/double_particle.jsonl` and
+//! `tests/vectors/woodcock.jsonl`; loop, traps and the mistakes that a port may make stand in `docs/PORTING.md`.
+//!
 //! ```
 //! use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};
 //!

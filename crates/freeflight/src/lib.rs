@@ -14,6 +14,16 @@
 //! | [`Tracking`] | szirmay-kalos-2017 eq. 9 and 12 | nothing: any sampling extinction, either sign | 1 where σ_samp ≥ σ_t ≥ 0 |
 //! | [`spectral`] | kutz-2017, wilkie-2014, raab-2008 section 3.2 | look-ups of N wavelengths | one for each wavelength |
 //!
+//! **Law.** Weighted flights integrate any test function f as collisions do: E\[weight · f(distance); collided\] = ∫ f σ_t T ds, T(s) being the
+//! transmittance to s, and E\[weight; escaped\] = T(length) ([`FreeFlight`]). With a weight of 1 the distance has the density σ_t T.
+//!
+//! # Porting
+//!
+//! [`spectral::SpectralTracking`], three wavelengths by one walk: `tests/vectors/spectral_tracking.jsonl` (event, distance, a weight for each
+//! wavelength). A flight by [`Woodcock`] is the walk of the estimator of that name, `tests/vectors/woodcock.jsonl`, whose last look-up is the
+//! distance; distances towards a point light are
+//! `tests/vectors/equiangular.jsonl` (kulla-2012). Loops, traps and precisions: `docs/PORTING.md`.
+//!
 //! ```
 //! use fairflight_freeflight::{Flight, FreeFlight, Woodcock};
 //! use fairflight_media::{Constant, PiecewiseLinear};

@@ -23,6 +23,18 @@
 //! Quadrature of a profile ([`RayQuadrature`]) is the reference that estimators are judged against; it is not an
 //! estimator. A [`Certificate`] proves the error of an optical thickness, or says what it could not prove.
 //!
+//! **Law.** A field is a function: the same s gives the same σ_t(s), finite, of either sign. Knowledge is never less than the truth it bounds: σ_t ≤
+//! majorant and σ_t ≥ minorant everywhere, an optical thickness is ∫ σ_t ds to rounding. An estimator is unbiased given the knowledge that its bounds
+//! ask for, and biased by a majorant that is none: [`Watched`] finds that at the look-up where it happens. Of a phase function ([`phase`]) the
+//! integral over the sphere is 1, and its samples have the density that it tells (henyey-1941, without the division by g that cancels near g = 0).
+//!
+//! # Porting
+//!
+//! The profile of all test vectors is [`PiecewiseLinear`], with nodes that are exact in every precision; in the layer `field` a port needs none,
+//! since the vectors say what each look-up returns. Phase functions: `tests/vectors/henyey_greenstein.jsonl` (cosine and value per steradian, g = ±(1
+//! − 2⁻¹²), ±2⁻²⁰, 0 and between). The page is
+//! `docs/PORTING.md`.
+//!
 //! ```
 //! use fairflight_media::{Certificate, ExpressionProfile, Extinction, Tolerance};
 //!

@@ -9,6 +9,19 @@
 //! * [`Replayed`]: the variates of a path, changed a little: steps of Metropolis sampling. A path tells it by [`Row`]s what it draws for.
 //! * [`points`]: the points of [`Sobol`], [`Halton`], [`Hammersley`] and [`LatinHypercube`], randomised, each a source of its own.
 //!
+//! **Law.** A variate u is an integer multiple of 2⁻⁵³ in \[0, 1), uniform on that lattice, independent of those before it; an exponential one is
+//! −ln(1 − u), of mean 1 and finite, since 1 − u is never 0 (inversion; [`UniformSource::next_exponential`]). All that an estimator proves of itself
+//! is proved given this.
+//!
+//! # Porting
+//!
+//! A port draws what its original draws, in the same order, and of two kinds: `u`, a uniform variate, and `e`, an exponential one made of a uniform
+//! one. The test vectors (`tests/vectors/KIND.jsonl`) write a variate as the integer k of u = k 2⁻⁵³, which every reader of JSON has exactly, and
+//! beside an `e` its value, correctly rounded: a port need not have our logarithm. A port with a generator of its own passes the vectors just as
+//! well; one that is to repeat our streams, too, begins batch b of 4096 estimates with [`Seeded::for_batch`]`(seed, b)`, the batch 0 not excepted,
+//! that is from [`derive_seed`]`(seed, b)`, filled into xoshiro256++ (blackman-2021) by SplitMix64 (steele-2014), and takes the 53 high bits of each
+//! word. The page is `docs/PORTING.md`; [`Scripted`] replays vectors in Rust.
+//!
 //! ```
 //! use fairflight_sources::{Scripted, Seeded, UniformSource, derive_seed};
 //!

@@ -7,6 +7,19 @@
 //!
 //! The crate knows numbers only: no light transport, no files, clocks, threads or random sources.
 //!
+//! **Law.** A right estimator is called unsound with a probability of at most α, whatever its distribution and for every N: a normal approximation is
+//! used only where its error is bounded from closed moments ([`approximation`]), elsewhere the binomial law or an exponential inequality
+//! ([`bernstein`]). A call is sound only if a relative bias of [`MAX_DETECTABLE_RELATIVE_BIAS`] would have been found with probability [`POWER`];
+//! what neither test can tell is not testable, and says the N that it would take. Moments are streamed and merged without cancellation (pebay-2008).
+//!
+//! # Porting
+//!
+//! Vectors (`tests/vectors/KIND.jsonl`) show that a port computes what its original computes of the same variates; that it draws them rightly only a
+//! statistical test shows. For that a port needs this crate's three steps: the moments of its estimates, the mean and variance that they should have
+//! (`harness estimate` tells them for any profile and estimator, closed form first), and the verdict. From Python it is one call,
+//! `fairflight.judge(estimates, mean, variance)` (`docs/PYTHON.md`). The page for ports is
+//! `docs/PORTING.md`.
+//!
 //! ```
 //! use fairflight_stats::{Moments, Reference, Scores, judge};
 //!

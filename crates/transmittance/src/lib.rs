@@ -25,6 +25,43 @@
 //! | [`RayMarching`] | perlin-1989 | a biased baseline |
 //! | [`Jackknife`] | peters-2025 | a biased baseline |
 //!
+//! **Law.** E\[estimate\] = T for every field that the estimator knows enough of (the bounds of its type) and admits
+//! ([`TransmittanceEstimator::admits`]); a biased baseline says so. Its variance is finite where [`Theory`] says it is, and of ratio and residual
+//! ratio tracking it is exp(∫ σ_diff² / σ_samp ds) − 1 in units of T² (szirmay-kalos-2017 eq. 16).
+//!
+//! # Porting
+//!
+//! | estimator | in specs and vectors | what it makes of given variates |
+//! |---|---|---|
+//! | [`Tracking`], double particle: ratio and residual ratio tracking | `double_particle` | `tests/vectors/double_particle.jsonl` |
+//! | [`Woodcock`] | `woodcock` | `tests/vectors/woodcock.jsonl` |
+//! | [`JitteredRatio`] | `jittered_ratio` | `tests/vectors/jittered_ratio.jsonl` |
+//! | [`UnbiasedRayMarching`] | `unbiased_ray_marching` | `tests/vectors/unbiased_ray_marching.jsonl` |
+//!
+//! Of a kind beyond these the file, where there is one, is `tests/vectors/KIND.jsonl` as well. The page `docs/PORTING.md` has the loop of each in
+//! pseudo-code, what it must know, the precision that it bears, and its traps with the bias that each makes. `harness check-port COMMAND` holds a
+//! program in any language to the vectors and names the mistake that it sees; ports that pass, to C++, Python and WGSL among others, are in
+//! `tests/ports`.
+//!
+//! A case of the vectors, `double_particle/1/0053`, replayed:
+//!
+//! ```
+//! use fairflight_collision::{Albedo, DoubleParticle};
+//! use fairflight_media::{Constant, PiecewiseLinear, Vacuum};
+//! use fairflight_sources::Scripted;
+//! use fairflight_transmittance::{Tracking, TransmittanceEstimator};
+//!
+//! let field = PiecewiseLinear::new(vec![0.0, 1.0, 2.0, 4.0, 8.0], vec![0.25, 1.0, 0.0, 0.75, 0.5]).unwrap();
+//! let model = DoubleParticle { albedo: Albedo::new(0.0).unwrap() };
+//! let estimator = Tracking::new(model, Vacuum::new(8.0), Constant::new(1.0, 8.0).unwrap());
+//! let draws = [8970981406146560_u64, 4190746156466176, 8939886916665344];
+//! let mut source = Scripted::new(draws.map(|k| k as f64 * 2.0_f64.powi(-53)));
+//! let (value, tolerance) = (0.13235096881578548, 1.7e-15);
+//! assert!((estimator.estimate(&field, &mut source) - value).abs() <= tolerance);
+//! ```
+//!
+//! And many estimates of another field:
+//!
 //! ```
 //! use fairflight_collision::{Albedo, DoubleParticle};
 //! use fairflight_media::{Constant, PiecewiseLinear, Vacuum};

@@ -95,6 +95,7 @@ fn found(count: usize, profile: &AnyProfile) -> Result<Vec<BoundCell>, Failure> 
         AnyProfile::Perlin(_) => {
             return Err(without_bounds("Perlin noise does not know its bounds in cells"));
         }
+        AnyProfile::Own(_) => return Err(without_bounds("the profile does not know its bounds in cells")),
     })
 }
 

@@ -79,7 +79,7 @@ pub(super) fn exact<F: Majorant + Minorant + OpticalThickness>(field: &F) -> Kno
 
 /// A profile of any type, behind a pointer: what is compiled for it is compiled once.
 #[derive(Clone, Debug)]
-pub struct ErasedField(pub(super) Arc<dyn KnownField>);
+pub struct ErasedField(pub Arc<dyn KnownField>);
 
 impl Extinction for ErasedField {
     #[inline]

@@ -85,6 +85,8 @@ profiles! {
     ExpressionMedium(Certified<Ray<Arc<ExpressionMedium>>>),
     /// A ray through voxels.
     Voxels(Ray<Arc<Voxels<VoxelLattice>>>),
+    /// A field of the program that embeds this library, by no spec.
+    Own(ErasedField),
 }
 
 /// A ray that crosses more voxel cells than this is refused: its reference alone would take minutes.
@@ -121,25 +123,21 @@ impl AnyProfile {
     #[must_use]
     pub fn entry_distance(&self) -> f64 {
         match self {
-            Self::Constant(_)
-            | Self::PiecewiseConstant(_)
-            | Self::PiecewiseLinear(_)
-            | Self::Expression(_) => 0.0,
             Self::Homogeneous(ray) => ray.entry_distance(),
             Self::AnalyticCosine(ray) => ray.entry_distance(),
             Self::Perlin(ray) => ray.field().entry_distance(),
             Self::ExpressionMedium(ray) => ray.field().entry_distance(),
             Self::Voxels(ray) => ray.entry_distance(),
+            _ => 0.0,
         }
     }
 
     /// True for a ray that meets nothing of its medium.
     #[must_use]
     pub fn misses(&self) -> bool {
-        let is_ray = !matches!(
-            self,
-            Self::Constant(_) | Self::PiecewiseConstant(_) | Self::PiecewiseLinear(_) | Self::Expression(_)
-        );
+        use AnyProfile::{AnalyticCosine, ExpressionMedium, Homogeneous, Perlin, Voxels};
+        let is_ray =
+            matches!(self, Homogeneous(_) | AnalyticCosine(_) | Perlin(_) | ExpressionMedium(_) | Voxels(_));
         is_ray && self.length() == 0.0
     }
 
@@ -171,15 +169,12 @@ impl AnyProfile {
         let at = format!("s = {}", self.entry_distance() + s);
         let point = |ray: DVec3| format!("{at}, point [{}, {}, {}]", ray.x, ray.y, ray.z);
         match self {
-            Self::Constant(_)
-            | Self::PiecewiseConstant(_)
-            | Self::PiecewiseLinear(_)
-            | Self::Expression(_) => at,
             Self::Homogeneous(ray) => point(ray.world_point(s)),
             Self::AnalyticCosine(ray) => point(ray.world_point(s)),
             Self::Perlin(ray) => point(ray.field().world_point(s)),
             Self::ExpressionMedium(ray) => point(ray.field().world_point(s)),
             Self::Voxels(ray) => point(ray.world_point(s)),
+            _ => at,
         }
     }
 }
