@@ -87,6 +87,9 @@ impl Case {
         let exact = Finished::of(model, Exact, script, profile);
         let double = Finished::of(model, Binary64, script, profile);
         assert!(exact.uses.len() <= script.len(), "{id}: draws more than it is given");
+        let on_lattice =
+            |(number, used): (usize, &Use)| *used == Use::Exponential || script.get(number).k().is_some();
+        assert!(exact.uses.iter().enumerate().all(on_lattice), "{id}: a uniform variate off the lattice");
         assert!(sort == Sort::Drawn || double.decides_as(&exact), "{id}: decided otherwise in doubles");
         let (mut tolerance, mut flags) = (Map::new(), Vec::new());
         // Without functions, ties are exact in every precision, and all else is in doubles once the exponentials are given.

@@ -19,7 +19,7 @@ fn kinds_without_vectors_are_refused() {
     assert_eq!(outcome.code, 2);
     assert!(outcome.stderr.contains("found woodcok (did you mean woodcock?)"), "{}", outcome.stderr);
     assert!(!std::path::Path::new("nowhere").exists());
-    assert_eq!(harness(&["check-port", "--kinds", "regular", "true"], "").code, 2);
+    assert_eq!(harness(&["check-port", "--kinds", "hybrid", "true"], "").code, 2);
 }
 
 #[cfg(unix)]
