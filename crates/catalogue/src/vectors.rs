@@ -1,8 +1,10 @@
 //! Cases of the test vectors, as estimators and wrong twins replay them.
 
+use fairflight_freeflight::Flight;
+use fairflight_freeflight::spectral::SpectralFlight;
 use fairflight_media::{
-    BoundCell, BoundedInCells, Cells, Extinction, InvertOpticalThickness, Majorant, OpticalThickness,
-    PiecewiseLinear,
+    BoundCell, Bounded, BoundedInCells, Cells, Constant, Extinction, InvertOpticalThickness, Majorant,
+    OpticalThickness, PiecewiseConstant, PiecewiseLinear, Scaled,
 };
 use fairflight_sources::UniformSource;
 use std::cell::RefCell;
@@ -153,5 +155,89 @@ pub struct Answer {
 impl From<f64> for Answer {
     fn from(value: f64) -> Self {
         Self { values: vec![value], collided: None }
+    }
+}
+
+impl Vector<'_> {
+    /// The profile of a case of this kind.
+    pub(crate) fn of(&self, kind: &str) -> Option<&Seen> {
+        self.field.filter(|_| self.kind == kind)
+    }
+
+    /// A parameter of the estimator.
+    pub(crate) fn estimator(&self, key: &str) -> Option<f64> {
+        (self.number)(&format!("/estimator/{key}"))
+    }
+
+    /// A parameter of the sampler.
+    pub(crate) fn sampler(&self, key: &str) -> Option<f64> {
+        (self.number)(&format!("/sampler/{key}"))
+    }
+
+    /// Numbers of the case by the path of their list.
+    pub(crate) fn numbers(&self, path: &str) -> Vec<f64> {
+        (0..).map_while(|i| (self.number)(&format!("{path}/{i}"))).collect()
+    }
+
+    /// Profile, constant sampling extinction and constant control of a case of tracking of this kind.
+    pub(crate) fn tracked(&self, kind: &str) -> Option<(&Seen, Constant, Constant)> {
+        let field = self.of(kind)?;
+        let constant = |sigma_t: f64| Constant::new(sigma_t, field.length()).ok();
+        let control = ["control/sigma_main", "control/sigma_t"].iter().find_map(|key| self.estimator(key));
+        Some((field, constant(self.estimator("sigma_samp")?)?, constant(control.unwrap_or(0.0))?))
+    }
+
+    /// Rates in cells, by the path of their edges and values.
+    pub(crate) fn rates(&self, path: &str) -> Option<PiecewiseConstant> {
+        let [edges, values] = ["edges", "values"].map(|key| self.numbers(&format!("{path}/{key}")));
+        PiecewiseConstant::new(edges, values).ok()
+    }
+
+    /// The profile with the majorant that the estimator claims.
+    pub(crate) fn bounded(&self, kind: &str) -> Option<Bounded<&Seen>> {
+        Bounded::new(self.of(kind)?, self.estimator("majorant")?).ok()
+    }
+
+    /// The answer of a flight on the profile of the case.
+    pub(crate) fn flown(&self, flight: Flight) -> Option<Answer> {
+        let (length, distance) = (self.field?.length(), flight.distance());
+        let values = vec![distance.unwrap_or(length), flight.weight()];
+        Some(Answer { values, collided: Some(distance.is_some()) })
+    }
+
+    /// The answer of a flight for several wavelengths on the profile of the case.
+    pub(crate) fn flown_together<const N: usize>(&self, flight: &SpectralFlight<N>) -> Option<Answer> {
+        let mut answer = self.flown(flight.of(0))?;
+        answer.values.splice(1.., flight.weights());
+        Some(answer)
+    }
+
+    /// The profile times the coefficients of three wavelengths.
+    pub(crate) fn spectrum(&self, kind: &str) -> Option<Scaled<&Seen, 3>> {
+        let coefficients = self.numbers("/coefficients").try_into().ok()?;
+        Scaled::new(self.of(kind)?, coefficients).ok()
+    }
+}
+
+type Answering = dyn Fn(&Vector<'_>, &mut Variates<'_>) -> Option<Answer> + Send + Sync;
+
+/// What a wrong twin makes of cases. To a reader of a debug print it is a function.
+pub(crate) struct Replay(Box<Answering>);
+
+impl Replay {
+    pub(crate) fn new(
+        answer: impl Fn(&Vector<'_>, &mut Variates<'_>) -> Option<Answer> + Send + Sync + 'static,
+    ) -> Self {
+        Self(Box::new(answer))
+    }
+
+    pub(crate) fn answer(&self, vector: &Vector<'_>, source: &mut Variates<'_>) -> Option<Answer> {
+        (self.0)(vector, source)
+    }
+}
+
+impl fmt::Debug for Replay {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("Fn(Vector)")
     }
 }

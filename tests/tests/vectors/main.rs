@@ -2,6 +2,7 @@
 
 mod case;
 mod replay;
+mod twins;
 
 use case::{numbers, put};
 use fairflight_tests::repository;
@@ -54,30 +55,38 @@ const FEWER_BITS: [(&str, f64); 5] = [
     ("telescoping", 0.8),
 ];
 
-#[test]
-fn estimators_replay_the_vectors() {
-    let (mut files, mut faults) = (0, Vec::new());
+/// Kinds and cases of all committed files.
+fn lines() -> Vec<(String, Vec<Value>)> {
+    let mut files = Vec::new();
     for path in fairflight_tests::files("tests/vectors") {
         if !fairflight_tests::has_extension(&path, &["jsonl"]) {
             continue;
         }
-        files += 1;
         let text = fs::read_to_string(&path).unwrap();
-        let lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        let (header, cases) = lines.split_first().unwrap();
+        let mut lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let header = lines.remove(0);
         assert_eq!(header["format"], "fairflight-vectors", "{}", path.display());
+        files.push((header["kind"].as_str().unwrap().to_owned(), lines));
+    }
+    files
+}
+
+#[test]
+fn estimators_replay_the_vectors() {
+    let mut faults = Vec::new();
+    let files = lines();
+    for (kind, cases) in &files {
         let replays: Vec<_> = cases.iter().map(replayed).collect();
         let equal = replays.iter().filter(|replay| **replay == Ok(true)).count();
-        println!("{}: {equal} of {} bit by bit", header["kind"], cases.len());
-        let share =
-            FEWER_BITS.iter().find(|(kind, _)| header["kind"] == *kind).map_or(0.99, |(_, share)| *share);
+        println!("{kind}: {equal} of {} bit by bit", cases.len());
+        let share = FEWER_BITS.iter().find(|(fewer, _)| kind == fewer).map_or(0.99, |(_, share)| *share);
         if (equal as f64) < share * cases.len() as f64 {
-            faults.push(format!("{}: {equal} of {} bit by bit", header["kind"], cases.len()));
+            faults.push(format!("{kind}: {equal} of {} bit by bit", cases.len()));
         }
         faults.extend(replays.into_iter().filter_map(Result::err));
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    assert_eq!(files, fairflight_vectors::KINDS.len());
+    assert_eq!(files.len(), fairflight_vectors::KINDS.len());
 }
 
 /// What is committed is what the generator writes.

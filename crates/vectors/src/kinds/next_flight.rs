@@ -199,5 +199,8 @@ fn cases() -> Vec<super::Case> {
     // σ_t = 1/4 at the start.
     let draws = vec![Draw::lattice(0), Draw::uniform(0.25), given(8.0)];
     cases.tie(&name("tie/collision-at-the-border"), &delta, Profile::SMOKE, draws);
+    // At 2^−8, σ_t is 0.2529; 256 levels take the variate 0.2534 for 1/4.
+    let draws = vec![given(2.0_f64.powi(-8)), Draw::uniform(0.25 + 7.0 * 2.0_f64.powi(-11)), given(8.0)];
+    cases.tie(&name("tie/between-two-of-256-levels"), &delta, Profile::SMOKE, draws);
     cases.cases
 }
