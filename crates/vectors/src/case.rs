@@ -1,6 +1,7 @@
 //! Cases as lines of JSON.
 
 use crate::kinds::Model;
+use crate::moments::Moments;
 use crate::number::Precise;
 use crate::run::{Run, Use};
 use crate::tolerance::{Finished, Tolerance};
@@ -41,6 +42,8 @@ pub struct Case {
     pub json: Value,
     /// Answers of ports with a known mistake.
     pub mistaken: Vec<Mistaken>,
+    /// Exact moments of its parameters, with the first case of them.
+    pub moments: Option<Value>,
 }
 
 /// A known mistake, and what a port with it answers to a case.
@@ -137,13 +140,9 @@ impl Case {
             expect["event"] = json!(event.name());
         }
         let mut json = json!({ "id": id, "flags": flags });
-        for (key, value) in model.stated().as_object().into_iter().flatten() {
-            json[key] = value.clone();
-        }
+        parameters(&mut json, model, profile);
         if model.looks_up() {
             expect["lookups"] = json!(exact.trace.len());
-            json["profile"] = profile.json();
-            json["knowledge"] = json!({ "majorant": profile.majorant() });
         }
         json["draws"] = json!(draws);
         json["expect"] = expect;
@@ -157,7 +156,26 @@ impl Case {
             answer: answered(&id, &answer, model),
         };
         let mistaken = model.mistakes(script, profile).into_iter().map(wrong).collect();
-        Some(Self { id, json, mistaken })
+        Some(Self { id, json, mistaken, moments: None })
+    }
+}
+
+/// Parameters with their exact moments, as a header states them.
+pub(crate) fn stated(name: &str, model: &impl Model, profile: Profile, moments: &Moments) -> Value {
+    let mut json = json!({ "id": format!("{name}/statistics") });
+    parameters(&mut json, model, profile);
+    json["expect"] = moments.json();
+    json
+}
+
+/// Puts the parameters of a case into it.
+fn parameters(json: &mut Value, model: &impl Model, profile: Profile) {
+    for (key, value) in model.stated().as_object().into_iter().flatten() {
+        json[key] = value.clone();
+    }
+    if model.looks_up() {
+        json["profile"] = profile.json();
+        json["knowledge"] = json!({ "majorant": profile.majorant() });
     }
 }
 

@@ -32,11 +32,13 @@ mod arithmetic;
 mod case;
 mod check;
 pub mod kinds;
+mod moments;
 mod number;
 mod perturbed;
 mod profile;
 mod run;
 mod script;
+mod statistics;
 mod tolerance;
 
 pub use arithmetic::{Arithmetic, Binary64, Exact};
@@ -48,3 +50,4 @@ pub use perturbed::{Noise, Perturbed, Precision};
 pub use profile::Profile;
 pub use run::{Event, Outcome, Run};
 pub use script::{Draw, Script};
+pub use statistics::{Scores, ask_statistics, asked_statistics, judge_statistics};

@@ -40,13 +40,24 @@ fn field(case: &Value) -> Option<Seen> {
     Some(Seen::new(profile.unwrap(), cells(case)))
 }
 
-/// Puts a case to `answer`; returns its answer, its source and its profile.
+/// Puts a case to `answer`, with the source of its variates; `look` sees what it did.
 pub(crate) fn put<T>(
     case: &Value,
     answer: impl FnOnce(&Vector<'_>, &mut Variates<'_>) -> T,
     look: impl FnOnce(&T, &Variates<'_>, Option<&Seen>),
 ) -> T {
-    let (field, variates) = (field(case), variates(case));
+    let variates = variates(case);
+    let mut source = Variates::new(&variates);
+    as_vector(case, |vector| {
+        let answered = answer(vector, &mut source);
+        look(&answered, &source, vector.field);
+        answered
+    })
+}
+
+/// A case, or the parameters of one, as a vector.
+pub(crate) fn as_vector<T>(case: &Value, then: impl FnOnce(&Vector<'_>) -> T) -> T {
+    let field = field(case);
     let number = |path: &str| {
         let found = case.pointer(path)?;
         found.as_f64().or_else(|| found.as_bool().map(f64::from))
@@ -55,9 +66,5 @@ pub(crate) fn put<T>(
     let kind =
         ["estimator", "sampler", "phase", "collision"].iter().find_map(|key| case[key]["kind"].as_str());
     let kind = kind.unwrap_or(if case["heuristic"].is_string() { "mis_weight" } else { "connection" });
-    let vector = Vector { kind, number: &number, word: &word, field: field.as_ref() };
-    let mut source = Variates::new(&variates);
-    let answered = answer(&vector, &mut source);
-    look(&answered, &source, field.as_ref());
-    answered
+    then(&Vector { kind, number: &number, word: &word, field: field.as_ref() })
 }

@@ -2,6 +2,7 @@
 
 mod case;
 mod replay;
+mod statistics;
 mod twins;
 
 use case::{numbers, put};

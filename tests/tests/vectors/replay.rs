@@ -1,7 +1,7 @@
 //! Answers of this project's estimators, samplers and functions to cases of the test vectors.
 
 use crate::case::numbers;
-use fairflight_catalogue::vectors::{Answer, Seen, Variates, Vector};
+use fairflight_catalogue::vectors::{Answer, Seen, Vector};
 use fairflight_collision::{
     Albedo, CollisionModel, DoubleParticle, Outcome, SingleOutcome, SingleParticle, Version,
     Woodcock as WoodcockCollision,
@@ -30,7 +30,7 @@ use glam::{DVec3, dvec3};
 use serde_json::Value;
 
 /// What this project makes of a case.
-pub(crate) fn answer(case: &Value, vector: &Vector<'_>, source: &mut Variates<'_>) -> Answer {
+pub(crate) fn answer(case: &Value, vector: &Vector<'_>, source: &mut impl UniformSource) -> Answer {
     match vector.field {
         Some(field) if case["estimator"].is_object() => estimated(case, vector, field, source),
         Some(field) => flown(case, vector, field, source),
@@ -48,14 +48,14 @@ fn version(word: &str) -> Version {
 }
 
 /// Tracking with the sampling extinction and the control of a case.
-fn tracked<M: CollisionModel>(case: &Value, model: M, field: &Seen, source: &mut Variates<'_>) -> f64 {
+fn tracked<M: CollisionModel>(case: &Value, model: M, field: &Seen, source: &mut impl UniformSource) -> f64 {
     let length = field.length();
     let constant = |sigma_t: f64| Constant::new(sigma_t, length).unwrap();
     let (sampling, control) = (&case["estimator"]["sigma_samp"], &case["estimator"]["control"]);
     let rates = || PiecewiseConstant::new(numbers(&sampling["edges"]), numbers(&sampling["values"])).unwrap();
     fn by<M: CollisionModel, C: OpticalThickness>(
         (model, control): (M, C),
-        (field, source): (&Seen, &mut Variates<'_>),
+        (field, source): (&Seen, &mut impl UniformSource),
         sampling: Result<Constant, PiecewiseConstant>,
     ) -> f64 {
         match sampling {
@@ -97,7 +97,7 @@ fn marched(case: &Value) -> UnbiasedRayMarching {
     UnbiasedRayMarching::new(comb, roulette).in_segments(segments).unwrap()
 }
 
-fn estimated(case: &Value, vector: &Vector<'_>, field: &Seen, source: &mut Variates<'_>) -> Answer {
+fn estimated(case: &Value, vector: &Vector<'_>, field: &Seen, source: &mut impl UniformSource) -> Answer {
     let of = |key: &str| (vector.number)(&format!("/estimator/{key}"));
     let number = |key: &str| of(key).unwrap_or_else(|| panic!("a number {key}"));
     let whole = |key: &str| number(key) as u32;
@@ -174,7 +174,7 @@ fn of_spectral(flight: SpectralFlight<3>, length: Option<f64>) -> Answer {
     Answer { values, collided: Some(distance.is_some()) }
 }
 
-fn flown(case: &Value, vector: &Vector<'_>, field: &Seen, source: &mut Variates<'_>) -> Answer {
+fn flown(case: &Value, vector: &Vector<'_>, field: &Seen, source: &mut impl UniformSource) -> Answer {
     let length = field.length();
     let constant = |sigma_t: f64| Constant::new(sigma_t, length).unwrap();
     let number = |key: &str| (vector.number)(&format!("/sampler/{key}")).unwrap();
@@ -235,7 +235,7 @@ fn flown(case: &Value, vector: &Vector<'_>, field: &Seen, source: &mut Variates<
 }
 
 /// Cosine and phase function, or the direction about the incident one.
-fn scattered(case: &Value, phase: &impl PhaseFunction, source: &mut Variates<'_>) -> Vec<f64> {
+fn scattered(case: &Value, phase: &impl PhaseFunction, source: &mut impl UniformSource) -> Vec<f64> {
     if case["incident"].is_array() {
         let incident = DVec3::from_slice(&numbers(&case["incident"]));
         let (u, v) = (source.next_uniform(), source.next_uniform());
@@ -248,7 +248,7 @@ fn scattered(case: &Value, phase: &impl PhaseFunction, source: &mut Variates<'_>
 }
 
 /// What is drawn without a profile.
-fn drawn(case: &Value, vector: &Vector<'_>, source: &mut Variates<'_>) -> Vec<f64> {
+fn drawn(case: &Value, vector: &Vector<'_>, source: &mut impl UniformSource) -> Vec<f64> {
     let number = |path: &str| (vector.number)(path).unwrap();
     let parameter = |key: &str| number(&format!("/phase/{key}"));
     match vector.kind {

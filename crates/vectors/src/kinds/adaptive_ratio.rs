@@ -1,6 +1,7 @@
 //! Adaptive ratio tracking: collisions at the rate of the null extinction found last (misso-2023).
 
 use super::{Cases, Kind, Model, given, mistakes};
+use crate::moments::Moments;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -85,6 +86,10 @@ impl Model for AdaptiveRatio {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(Moments::unbiased("transmittance", profile))
     }
 
     fn stated(&self) -> Value {

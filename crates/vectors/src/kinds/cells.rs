@@ -77,6 +77,17 @@ impl Bounds {
             .map(|i| [self.edges[i], self.edges[i + 1], self.minorants[i], self.majorants[i]])
     }
 
+    /// The cell that holds a distance.
+    pub(super) fn at(&self, s: f64) -> [f64; 4] {
+        let last = self.minorants.len() - 1;
+        self.cells().find(|[_, to, ..]| s < *to).unwrap_or([
+            0.0,
+            0.0,
+            self.minorants[last],
+            self.majorants[last],
+        ])
+    }
+
     /// As specs have it.
     pub(super) fn json(&self) -> Value {
         json!({ "edges": self.edges, "minorants": self.minorants, "majorants": self.majorants })

@@ -2,6 +2,7 @@
 
 use super::cells::Rates;
 use super::{Cases, Kind, Model, given, mistakes};
+use crate::moments::{Collision, Moments, breaks_at, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -85,6 +86,18 @@ impl Model for InCells {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let control = self.control;
+        let main = control.map_or(0.0, |control| -control.thickness(&profile.length()));
+        let mut further = self.sampling.edges.to_vec();
+        further.extend(control.iter().flat_map(|control| control.s));
+        let at = |s: f64, sigma_t: f64| {
+            let (rate, control) = (self.sampling.at(&s), control.map_or(0.0, |control| control.at(&s)));
+            Collision::always(rate, 1.0 - (sigma_t - control) / rate)
+        };
+        Some(product("transmittance", profile, &breaks_at(profile, &further, &[]), (main, 0.0), at))
     }
 
     fn stated(&self) -> Value {

@@ -2,6 +2,7 @@
 
 use super::p_series::{point, poisson};
 use super::{Cases, Kind, Model, given, mistakes, u};
+use crate::moments::{Collision, Moments, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -59,6 +60,12 @@ impl Model for GeneralisedPoisson {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let (Self { pivot, rate, .. }, length) = (*self, profile.length());
+        let at = |_: f64, sigma_t: f64| Collision::always(rate / length, (pivot - length * sigma_t) / rate);
+        Some(product("transmittance", profile, profile.s, (rate - pivot, 0.0), at))
     }
 
     fn stated(&self) -> Value {

@@ -1,6 +1,7 @@
 //! Free flights by inversion of the optical thickness (szirmay-kalos-2017 eq. 3 and 4), or by regular tracking through cells.
 
 use super::{Cases, Kind, LARGEST, Model, given, mistakes};
+use crate::moments::{Moments, coin};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -106,6 +107,15 @@ impl Model for Flight {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        if !self.is_regular {
+            return Some(coin("escaped", profile).looking_up(0.0));
+        }
+        let reached = |s: &f64| libm::exp(-profile.thickness(s));
+        let cells: f64 = profile.s[..profile.s.len() - 1].iter().map(reached).sum();
+        Some(coin("escaped", profile).looking_up(2.0 * cells + 2.0 * (1.0 - reached(&profile.length()))))
     }
 
     fn stated(&self) -> Value {

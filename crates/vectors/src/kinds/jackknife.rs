@@ -2,6 +2,7 @@
 
 use super::comb::{Comb, Shape};
 use super::{Cases, Kind, LARGEST, Model, mistakes};
+use crate::moments::{Moments, Shifts, of_two_shifts};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -66,6 +67,12 @@ impl Model for Jackknife {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let comb = Shifts::new(profile, self.teeth, false);
+        let raw = of_two_shifts(&comb, |x, y| libm::cos(0.5 * (x - y)) * libm::exp(-0.5 * (x + y)));
+        Some(Moments::of_raw("transmittance", raw, Some(2.0 * f64::from(self.teeth))))
     }
 
     fn stated(&self) -> Value {

@@ -1,6 +1,7 @@
 //! Free flights with one candidate in each stratum: the companion of jittered ratio tracking.
 
 use super::{Cases, Kind, Model, given, mistakes, u};
+use crate::moments::{Moments, coin};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -84,6 +85,10 @@ impl Model for Flight {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(coin("escaped", profile))
     }
 
     fn stated(&self) -> Value {

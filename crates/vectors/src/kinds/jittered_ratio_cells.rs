@@ -2,6 +2,7 @@
 
 use super::cells::Bounds;
 use super::{Cases, Kind, Model, mistakes};
+use crate::moments::{Moments, strata};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -86,6 +87,10 @@ impl Model for InCells {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(strata(profile, self.cells.cells(), self.epsilon))
     }
 
     fn stated(&self) -> Value {

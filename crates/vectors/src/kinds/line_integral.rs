@@ -1,6 +1,7 @@
 //! The line integral of raab-2008 algorithm 2: Woodcock flights whose first steps are stratified.
 
 use super::{Cases, Kind, Model, mistakes};
+use crate::moments::Moments;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -98,6 +99,10 @@ impl Model for LineIntegral {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(Moments::unbiased("transmittance", profile))
     }
 
     fn stated(&self) -> Value {

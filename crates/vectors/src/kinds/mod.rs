@@ -36,10 +36,11 @@ mod unbiased_ray_marching_combs;
 mod woodcock;
 mod woodcock_flight;
 
-use crate::case::{Case, Sort, header};
+use crate::case::{Case, Sort, header, stated};
+use crate::moments::Moments;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Binary64, Draw, Outcome, Profile, Run, Script};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// An estimator, a sampler or a function with its parameters, written down over any arithmetic.
 pub(crate) trait Model {
@@ -59,6 +60,11 @@ pub(crate) trait Model {
     /// Runs of ports with a known mistake on the same variates, in doubles.
     fn mistakes(&self, _script: &Script, _profile: Profile) -> Vec<(&'static str, Finished)> {
         Vec::new()
+    }
+
+    /// Exact moments of its score on a profile, for a statistical test.
+    fn moments(&self, _profile: Profile) -> Option<Moments> {
+        None
     }
 
     /// True of what looks up a profile.
@@ -86,11 +92,21 @@ impl Kind {
         (self.cases)()
     }
 
+    /// Parameters with their exact moments: what a header has for a statistical test.
+    #[must_use]
+    pub fn moments(&self) -> Vec<Value> {
+        self.cases().into_iter().filter_map(|case| case.moments).collect()
+    }
+
     /// The file of the kind: a header, then a case a line.
     #[must_use]
     pub fn lines(&self) -> Vec<Value> {
-        let cases = self.cases().into_iter().map(|case| case.json);
-        std::iter::once(header(self.name, self.outputs, self.notes)).chain(cases).collect()
+        let (mut header, cases) = (header(self.name, self.outputs, self.notes), self.cases());
+        let moments: Vec<&Value> = cases.iter().filter_map(|case| case.moments.as_ref()).collect();
+        if !moments.is_empty() {
+            header["moments"] = json!(moments);
+        }
+        std::iter::once(header).chain(cases.into_iter().map(|case| case.json)).collect()
     }
 }
 
@@ -153,10 +169,14 @@ impl Cases {
 
     /// Adds so many cases drawn at random, less those that a right port may decide otherwise.
     fn draw_some(&mut self, count: usize, name: &str, model: &impl Model, profile: Profile) {
+        let first = self.cases.len();
         for number in 0..count {
             let id = format!("{name}/{number:04}");
             let script = Script::of(&id, MOST_DRAWS);
             self.cases.extend(Case::of(id, Sort::Drawn, model, &script, profile));
+        }
+        if let Some(case) = self.cases.get_mut(first) {
+            case.moments = model.moments(profile).map(|moments| stated(name, model, profile, &moments));
         }
     }
 

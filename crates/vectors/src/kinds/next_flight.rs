@@ -1,6 +1,7 @@
 //! Next-flight estimators and their combinations with ratio tracking (cramer-1978, georgiev-2019).
 
 use super::{Cases, Kind, Model, given, mistakes};
+use crate::moments::{Moments, integrate};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -169,6 +170,33 @@ impl Model for NextFlight {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let (mu, length) = (self.majorant, profile.length());
+        let is_ratio = self.version == Version::Ratio;
+        if !is_ratio && self.version != Version::Delta {
+            return Some(Moments::unbiased("transmittance", profile));
+        }
+        // A collision at y moves the expectation by W T(y, S) (w - 1 + exp(-g)), g = mu (S - y) - tau(y, S); E[W^2] = exp(int (w^2 - 1) mu).
+        let tau = |s: f64| profile.thickness(&s);
+        let growth = |y: f64| {
+            let mut before: Vec<f64> = profile.s.iter().copied().filter(|s| *s < y).collect();
+            before.push(y);
+            integrate(&before, |s| {
+                let r = profile.at(&s) / mu;
+                mu * if is_ratio { r * r - 2.0 * r } else { -r }
+            })
+        };
+        let variance = integrate(profile.s, |y| {
+            let (r, behind) = (profile.at(&y) / mu, tau(length) - tau(y));
+            let jump = libm::exp(behind - mu * (length - y)) - r;
+            let ending = if is_ratio { 0.0 } else { r * (1.0 - r) };
+            mu * libm::exp(growth(y) - 2.0 * behind) * (jump * jump + ending)
+        });
+        let lookups = integrate(profile.s, |s| mu * if is_ratio { 1.0 } else { libm::exp(-tau(s)) });
+        let known = Moments { variance: Some(variance), ..Moments::unbiased("transmittance", profile) };
+        Some(known.looking_up(lookups))
     }
 
     fn stated(&self) -> Value {

@@ -1,6 +1,7 @@
 //! The power series of transmittance about a pivot, truncated at a random order (georgiev-2019).
 
 use super::{Cases, Kind, LARGEST, Model, mistakes, u};
+use crate::moments::{Collision, Moments, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Precise, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -212,6 +213,16 @@ impl Model for PSeries {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let pivot = self.pivot;
+        if self.version != Version::Ratio {
+            return Some(Moments::unbiased("transmittance", profile));
+        }
+        let length = profile.length();
+        let at = |_: f64, sigma_t: f64| Collision::always(pivot / length, 1.0 - length * sigma_t / pivot);
+        Some(product("transmittance", profile, profile.s, (0.0, 0.0), at))
     }
 
     fn stated(&self) -> Value {

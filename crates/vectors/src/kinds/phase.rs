@@ -1,6 +1,7 @@
 //! Phase functions beside henyey-1941's, and the direction that one leads to.
 
 use super::{Cases, Kind, LARGEST, Model, mistakes, u};
+use crate::moments::{Moments, integrate};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -143,6 +144,24 @@ impl Model for Phase {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, _profile: Profile) -> Option<Moments> {
+        let density = |cosine: f64| match self.function {
+            Function::Isotropic => 0.5,
+            Function::Rayleigh => 0.375 * (1.0 + cosine * cosine),
+            Function::Schlick { k } => 0.5 * (1.0 - k * k) / ((1.0 - k * cosine) * (1.0 - k * cosine)),
+            Function::Tabulated => {
+                let end = (1..3).find(|&i| cosine < COSINES[i]).unwrap_or(3);
+                let t = (cosine - COSINES[end - 1]) / (COSINES[end] - COSINES[end - 1]);
+                ((1.0 - t) * VALUES[end - 1] + t * VALUES[end]) / INTEGRALS[3]
+            }
+        };
+        // Panels that shrink towards the peak.
+        let breaks = [-1.0, 0.0, 0.5, 0.75, 0.875, 0.9375, 1.0];
+        let raw =
+            std::array::from_fn(|i| integrate(&breaks, |cosine| density(cosine) * cosine.powi(i as i32 + 1)));
+        Some(Moments::of_raw("cosine", raw, None))
     }
 
     fn stated(&self) -> Value {

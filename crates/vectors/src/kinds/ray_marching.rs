@@ -1,6 +1,7 @@
 //! Ray marching: the exponential of a Riemann sum (perlin-1989). Biased.
 
 use super::{Cases, Kind, LARGEST, Model, mistakes};
+use crate::moments::{Moments, Shifts, of_shifts};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -73,6 +74,12 @@ impl Model for RayMarching {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let comb = Shifts::new(profile, self.steps, false);
+        let raw = of_shifts(&comb.breaks(), |u| libm::exp(-comb.thickness(u)));
+        self.jitter.then(|| Moments::of_raw("transmittance", raw, Some(f64::from(self.steps))))
     }
 
     fn stated(&self) -> Value {

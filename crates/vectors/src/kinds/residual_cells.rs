@@ -2,6 +2,7 @@
 
 use super::cells::Bounds;
 use super::{Cases, Kind, Model, given, mistakes};
+use crate::moments::{Collision, Moments, breaks_at, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -92,6 +93,17 @@ impl Model for ResidualCells {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let control: f64 = self.cells.cells().map(|[from, to, minorant, _]| minorant * (to - from)).sum();
+        let breaks = breaks_at(profile, self.cells.edges, &[]);
+        let at = |s: f64, sigma_t: f64| {
+            let [_, _, minorant, majorant] = self.cells.at(s);
+            let rate = self.rate * (majorant - minorant);
+            Collision::always(rate, if rate > 0.0 { 1.0 - (sigma_t - minorant) / rate } else { 1.0 })
+        };
+        Some(product("transmittance", profile, &breaks, (-control, 0.0), at))
     }
 
     fn stated(&self) -> Value {

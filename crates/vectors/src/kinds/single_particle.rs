@@ -1,6 +1,7 @@
 //! Tracking by the single particle model: at most one particle leaves a collision (szirmay-kalos-2017 eq. 9 and 12).
 
 use super::{Cases, Kind, LARGEST, Model, given, mistakes, u};
+use crate::moments::{Collision, Moments, breaks_at, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -113,6 +114,20 @@ impl Model for SingleParticle {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let Self { version, albedo, sigma_samp, control, .. } = *self;
+        let kinks = [0.0, 1.0, 2.0 / (1.0 + albedo)].map(|r| control + r * sigma_samp);
+        let at = |_: f64, sigma_t: f64| {
+            let r = (sigma_t - control) / sigma_samp;
+            let (transmit, sum) = ((1.0 - r).abs(), albedo * r.abs() + (1.0 - r).abs());
+            let terminates = version.terminates(&r, &sum);
+            let (goes_on, size) = if terminates { (transmit, 1.0) } else { (transmit / sum, sum) };
+            Collision { rate: sigma_samp, goes_on, weight: size.copysign(1.0 - r) }
+        };
+        let breaks = breaks_at(profile, &[], &kinks);
+        Some(product("transmittance", profile, &breaks, (-control * profile.length(), 0.0), at))
     }
 
     fn stated(&self) -> Value {

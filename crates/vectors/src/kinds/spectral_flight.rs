@@ -1,6 +1,7 @@
 //! Free flights for several wavelengths at once, beside the history-aware average (kutz-2017, wilkie-2014, raab-2008 section 3.2).
 
 use super::{Cases, Kind, Model, given, mistakes, u};
+use crate::moments::Moments;
 use crate::run::Event;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
@@ -241,6 +242,10 @@ impl Model for Flight {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(Moments::unbiased("escaped", profile))
     }
 
     fn stated(&self) -> Value {

@@ -2,6 +2,7 @@
 
 use super::comb::{Comb, Shape};
 use super::{Cases, Kind, Model, mistakes, u};
+use crate::moments::{Moments, Shifts, of_shifts};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -113,6 +114,39 @@ impl Model for Telescoping {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let comb = Shifts::new(profile, self.teeth, self.shape == Shape::Matched);
+        let (mut raw, mut probability) = ([0.0; 4], self.level_ratio);
+        // Differences fall by four from level to level, the probabilities of levels by 8/3.
+        for level in 0..14 {
+            let combs = 1_u32 << level;
+            let inner = |a: u32, u: f64| comb.thickness((f64::from(a) + u) / f64::from(combs));
+            let folds = comb.breaks().into_iter().map(|u| (u * f64::from(combs)).fract());
+            let mut breaks: Vec<f64> = folds.chain([0.0, 1.0]).collect();
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup();
+            let of_level = of_shifts(&breaks, |u| {
+                let (mut base, mut sums) = (0.0, [0.0; 2]);
+                for a in 0..combs {
+                    let x = inner(a, u);
+                    base += libm::exp(-x) / f64::from(combs);
+                    sums[a as usize % 2] += x / f64::from(combs);
+                }
+                let sine = libm::sinh(0.5 * (sums[1] - sums[0]));
+                let difference =
+                    if level == 0 { 0.0 } else { -2.0 * libm::exp(-sums[0] - sums[1]) * sine * sine };
+                base + difference / probability
+            });
+            raw = std::array::from_fn(|i| raw[i] + probability * of_level[i]);
+            probability *= 1.0 - self.level_ratio;
+        }
+        // Higher levels add next to nothing to a base that hardly varies there. Their look-ups have no variance to be judged by.
+        let [base, ..] = of_shifts(&comb.breaks(), |u| libm::exp(-comb.thickness(u)));
+        let rest = probability / self.level_ratio;
+        raw = std::array::from_fn(|i| raw[i] + rest * base.powi(i as i32 + 1));
+        Some(Moments::of_raw("transmittance", raw, None))
     }
 
     fn stated(&self) -> Value {

@@ -3,6 +3,7 @@
 
 use super::single_particle::Version;
 use super::{Cases, Kind, Model, given, mistakes, u};
+use crate::moments::{Collision, Moments, breaks_at, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -114,6 +115,19 @@ impl Model for Flight {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let Self { version, sigma_samp, control, .. } = *self;
+        let kinks = [0.0, 1.0].map(|r| control + r * sigma_samp);
+        let at = |_: f64, sigma_t: f64| {
+            let r = (sigma_t - control) / sigma_samp;
+            let (transmit, sum) = ((1.0 - r).abs(), r.abs() + (1.0 - r).abs());
+            let terminates = version.terminates(&r, &sum);
+            let (goes_on, size) = if terminates { (transmit, 1.0) } else { (transmit / sum, sum) };
+            Collision { rate: sigma_samp, goes_on, weight: size.copysign(1.0 - r) }
+        };
+        Some(product("escaped", profile, &breaks_at(profile, &[], &kinks), (0.0, control), at))
     }
 
     fn stated(&self) -> Value {

@@ -1,6 +1,7 @@
 //! Unbiased ray marching (kettunen-2021): a power series in the differences of independent combs.
 
 use super::{Cases, Kind, Model, mistake, u};
+use crate::moments::{Moments, Shifts, second_moment};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -94,6 +95,11 @@ impl Model for UnbiasedRayMarching {
             mistake(name, &Wrong { teeth, endpoint_matching, roulette, slip }, script, profile)
         };
         all.map(wrong).into()
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let comb = Shifts::new(profile, self.teeth, self.endpoint_matching);
+        Some(second_moment(&comb, 1.0 - self.roulette))
     }
 
     fn stated(&self) -> Value {

@@ -3,6 +3,7 @@
 use super::comb::{Comb, Shape};
 use super::unbiased_ray_marching::{order, series};
 use super::{Cases, Kind, Model, mistakes};
+use crate::moments::Moments;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -102,6 +103,10 @@ impl Model for InSegments {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(Moments::unbiased("transmittance", profile))
     }
 
     fn stated(&self) -> Value {

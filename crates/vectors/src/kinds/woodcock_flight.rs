@@ -2,6 +2,7 @@
 
 use super::cells::Rates;
 use super::{Cases, Kind, Model, given, mistakes, u};
+use crate::moments::{Collision, Moments, breaks_at, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -73,6 +74,14 @@ impl Model for Flight {
 
     fn mistakes(&self, script: &Script, profile: Profile) -> Vec<(&'static str, Finished)> {
         mistakes(&SLIPS, |slip| Self { slip: Some(slip), ..*self }, script, profile)
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let at = |s: f64, sigma_t: f64| {
+            let rate = self.majorant.at(&s);
+            Collision { rate, goes_on: 1.0 - sigma_t / rate, weight: 1.0 }
+        };
+        Some(product("escaped", profile, &breaks_at(profile, self.majorant.edges, &[]), (0.0, 0.0), at))
     }
 
     fn stated(&self) -> Value {
