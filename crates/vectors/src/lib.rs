@@ -26,6 +26,9 @@
 //! assert!(judge(&case.json, &answer, Precision::Binary64).is_err());
 //! ```
 //!
+//! Headers state exact moments of each set of parameters, from the law of the estimator by quadrature over the pieces of the profile: [`ask_statistics`] judges
+//! estimates that a port makes from a generator of its own.
+//!
 //! Logarithms and exponentials of the exact run are rounded once. They come from no library that a later version of this project may change.
 
 mod arithmetic;

@@ -65,6 +65,12 @@ pub(crate) fn as_vector<T>(case: &Value, then: impl FnOnce(&Vector<'_>) -> T) ->
     let word = |path: &str| case.pointer(path).and_then(Value::as_str);
     let kind =
         ["estimator", "sampler", "phase", "collision"].iter().find_map(|key| case[key]["kind"].as_str());
-    let kind = kind.unwrap_or(if case["heuristic"].is_string() { "mis_weight" } else { "connection" });
+    let kind = kind.unwrap_or(if case["path"].is_array() {
+        "path_weights"
+    } else if case["heuristic"].is_string() {
+        "mis_weight"
+    } else {
+        "connection"
+    });
     then(&Vector { kind, number: &number, word: &word, field: field.as_ref() })
 }

@@ -1,6 +1,7 @@
 //! Answers of this project's estimators, samplers and functions to cases of the test vectors.
 
 use crate::case::numbers;
+use fairflight_bidirectional::LogHeuristic;
 use fairflight_catalogue::vectors::{Answer, Seen, Vector};
 use fairflight_collision::{
     Albedo, CollisionModel, DoubleParticle, Outcome, SingleOutcome, SingleParticle, Version,
@@ -247,6 +248,34 @@ fn scattered(case: &Value, phase: &impl PhaseFunction, source: &mut impl Uniform
     vec![cosine, phase.eval(cosine)]
 }
 
+fn heuristic(vector: &Vector<'_>) -> Heuristic {
+    match (vector.word)("/heuristic").unwrap() {
+        "balance" => Heuristic::Balance,
+        "power" => Heuristic::Power,
+        _ => Heuristic::Maximum,
+    }
+}
+
+/// The weights of all strategies of a path, in logarithms.
+fn strategies(case: &Value, heuristic: Heuristic, source: &mut impl UniformSource) -> Vec<f64> {
+    // ln p_(t+1)/p_t of each vertex.
+    let mut step = |exponents: &Value| {
+        let [forward, backward] =
+            [0, 1].map(|i| 2.0_f64.powf(exponents[i].as_f64().unwrap()) * (1.0 + source.next_uniform()));
+        (forward / backward).ln()
+    };
+    let steps: Vec<f64> = case["path"].as_array().unwrap().iter().map(&mut step).collect();
+    let sum = |logs: &mut dyn Iterator<Item = f64>| {
+        logs.fold(f64::NEG_INFINITY, |sum, ln| heuristic.add(sum, heuristic.scale(ln)))
+    };
+    let weight = |t: usize| {
+        let fewer = sum(&mut (0..t).map(|j| -steps[j..t].iter().sum::<f64>()));
+        let more = sum(&mut (t + 1..=steps.len()).map(|j| steps[t..j].iter().sum()));
+        heuristic.weight(fewer, more)
+    };
+    (0..=steps.len()).map(weight).collect()
+}
+
 /// What is drawn without a profile.
 fn drawn(case: &Value, vector: &Vector<'_>, source: &mut impl UniformSource) -> Vec<f64> {
     let number = |path: &str| (vector.number)(path).unwrap();
@@ -276,15 +305,12 @@ fn drawn(case: &Value, vector: &Vector<'_>, source: &mut impl UniformSource) -> 
             vec![distance, law.pdf_distance(distance), law.probability_beyond(beyond)]
         }
         "mis_weight" => {
-            let heuristic = match (vector.word)("/heuristic").unwrap() {
-                "balance" => Heuristic::Balance,
-                "power" => Heuristic::Power,
-                _ => Heuristic::Maximum,
-            };
+            let heuristic = heuristic(vector);
             let exponents = numbers(&case["exponents"]);
             let [p, q] = [0, 1].map(|i| 2.0_f64.powf(exponents[i]) * (1.0 + source.next_uniform()));
             vec![heuristic.mis_weight(p, q), heuristic.mis_weight(q, p)]
         }
+        "path_weights" => strategies(case, heuristic(vector), source),
         "connection" => {
             let scale = 2.0_f64.powf(number("/connection/exponent"));
             let [x, y, z] = [(); 3].map(|()| scale * (source.next_uniform() + 0.25));

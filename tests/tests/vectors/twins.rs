@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::fs;
 
 const CHAINS: &str = "a law of chains: a state depends on all mutations before it";
-const PATHS: &str = "a law of paths through a scene; pairs of densities are in mis_weight";
+const PATHS: &str = "a law of paths through a scene; weights from densities are in path_weights";
 const WALKS: &str = "a law of an integrator, of which each walk and each distance is right";
 const CANDIDATES: &str = "a law of an integrator whose candidates come from a scene";
 const FORMULA: &str = "a closed form is wrong, no estimate; the exact moments refuse it";

@@ -24,11 +24,23 @@ pub(super) static KIND: Kind = Kind {
     cases,
 };
 
+/// A law of weights from densities.
 #[derive(Clone, Copy, PartialEq)]
-enum Heuristic {
+pub(super) enum Heuristic {
     Balance,
     Power,
     Maximum,
+}
+
+impl Heuristic {
+    /// Name in cases.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Balance => "balance",
+            Self::Power => "power",
+            Self::Maximum => "maximum",
+        }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -92,12 +104,7 @@ impl Model for Weight {
     }
 
     fn stated(&self) -> Value {
-        let heuristic = match self.heuristic {
-            Heuristic::Balance => "balance",
-            Heuristic::Power => "power",
-            Heuristic::Maximum => "maximum",
-        };
-        json!({ "heuristic": heuristic, "exponents": self.exponents })
+        json!({ "heuristic": self.heuristic.name(), "exponents": self.exponents })
     }
 
     fn looks_up(&self) -> bool {

@@ -20,6 +20,7 @@ mod line_integral;
 mod mis_weight;
 mod next_flight;
 mod p_series;
+mod path_weights;
 mod phase;
 mod progressive_majorant;
 mod ray_marching;
@@ -111,7 +112,7 @@ impl Kind {
 }
 
 /// The registry of kinds, in the order of their files.
-pub static KINDS: [&Kind; 33] = [
+pub static KINDS: [&Kind; 34] = [
     &double_particle::KIND,
     &woodcock::KIND,
     &jittered_ratio::KIND,
@@ -145,6 +146,7 @@ pub static KINDS: [&Kind; 33] = [
     &truncated_exponential::KIND,
     &bounded_connection::KIND,
     &mis_weight::KIND,
+    &path_weights::KIND,
 ];
 
 /// Cases drawn of one set of parameters.
