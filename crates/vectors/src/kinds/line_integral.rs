@@ -1,7 +1,7 @@
 //! The line integral of raab-2008 algorithm 2: Woodcock flights whose first steps are stratified.
 
 use super::{Cases, Kind, Model, mistakes};
-use crate::moments::Moments;
+use crate::moments::{Moments, integrate};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -102,7 +102,26 @@ impl Model for LineIntegral {
     }
 
     fn moments(&self, profile: Profile) -> Option<Moments> {
-        Some(Moments::unbiased("transmittance", profile))
+        let (majorant, length, n) = (self.majorant, profile.length(), f64::from(self.splits));
+        let (p, tau) = (-libm::expm1(-majorant * length), |s: f64| profile.thickness(&s));
+        // The probability that a flight escapes whose first variate is u p.
+        let escapes = |u: f64| {
+            let s = (-libm::log1p(-u * p) / majorant).min(length);
+            (1.0 - profile.at(&s) / majorant) * libm::exp(tau(s) - tau(length))
+        };
+        let mut breaks = vec![0.0, 1.0];
+        breaks.extend(profile.s.iter().map(|s| (-libm::expm1(-majorant * s) / p * n).fract()));
+        breaks.sort_by(f64::total_cmp);
+        // Given the shift, flights are independent coins: E[count^2] = E[sum g (1 - g) + (sum g)^2].
+        let sum = |shift: f64, f: &dyn Fn(f64) -> f64| -> f64 {
+            (0..self.splits).map(|k| f(escapes((f64::from(k) + shift) / n))).sum()
+        };
+        let mean = integrate(&breaks, |shift| sum(shift, &|g| g));
+        let second = integrate(&breaks, |shift| sum(shift, &|g| g * (1.0 - g)) + sum(shift, &|g| g).powi(2));
+        let variance = Some((second - mean * mean) * (p / n) * (p / n));
+        // Woodcock's look-ups, of flights that collide with the majorant's medium.
+        let lookups = n * integrate(profile.s, |s| majorant * libm::exp(-tau(s))) / p;
+        Some(Moments { variance, ..Moments::unbiased("transmittance", profile) }.looking_up(lookups))
     }
 
     fn stated(&self) -> Value {
