@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 fn pages() -> Vec<PathBuf> {
     let root = repository();
     let mut folders = vec![root.clone(), root.join("docs"), root.join("tests/fixtures")];
-    folders.push(root.join("docs/decisions"));
+    folders.extend(["docs/decisions", "docs/porting"].map(|folder| root.join(folder)));
     let mut found: Vec<PathBuf> = folders
         .iter()
         .flat_map(|folder| fs::read_dir(folder).unwrap())

@@ -30,6 +30,7 @@ mod twins;
 pub mod bidirectional;
 pub mod paths;
 mod profiles;
+pub mod vectors;
 pub mod vpl;
 
 pub use checks::{Check, Effort, FAMILY_LEVEL, FAMILY_SIZE, Law, catalogue, check_level};

@@ -1,6 +1,7 @@
 //! Cases as lines of JSON.
 
 use crate::kinds::Model;
+use crate::moments::Moments;
 use crate::number::Precise;
 use crate::run::{Run, Use};
 use crate::tolerance::{Finished, Tolerance};
@@ -41,6 +42,8 @@ pub struct Case {
     pub json: Value,
     /// Answers of ports with a known mistake.
     pub mistaken: Vec<Mistaken>,
+    /// Exact moments of its parameters, with the first case of them.
+    pub moments: Option<Value>,
 }
 
 /// A known mistake, and what a port with it answers to a case.
@@ -87,6 +90,9 @@ impl Case {
         let exact = Finished::of(model, Exact, script, profile);
         let double = Finished::of(model, Binary64, script, profile);
         assert!(exact.uses.len() <= script.len(), "{id}: draws more than it is given");
+        let on_lattice =
+            |(number, used): (usize, &Use)| *used == Use::Exponential || script.get(number).k().is_some();
+        assert!(exact.uses.iter().enumerate().all(on_lattice), "{id}: a uniform variate off the lattice");
         assert!(sort == Sort::Drawn || double.decides_as(&exact), "{id}: decided otherwise in doubles");
         let (mut tolerance, mut flags) = (Map::new(), Vec::new());
         // Without functions, ties are exact in every precision, and all else is in doubles once the exponentials are given.
@@ -134,13 +140,9 @@ impl Case {
             expect["event"] = json!(event.name());
         }
         let mut json = json!({ "id": id, "flags": flags });
-        for (key, value) in model.stated().as_object().into_iter().flatten() {
-            json[key] = value.clone();
-        }
+        parameters(&mut json, model, profile);
         if model.looks_up() {
             expect["lookups"] = json!(exact.trace.len());
-            json["profile"] = profile.json();
-            json["knowledge"] = json!({ "majorant": profile.majorant() });
         }
         json["draws"] = json!(draws);
         json["expect"] = expect;
@@ -154,7 +156,26 @@ impl Case {
             answer: answered(&id, &answer, model),
         };
         let mistaken = model.mistakes(script, profile).into_iter().map(wrong).collect();
-        Some(Self { id, json, mistaken })
+        Some(Self { id, json, mistaken, moments: None })
+    }
+}
+
+/// Parameters with their exact moments, as a header states them.
+pub(crate) fn stated(name: &str, model: &impl Model, profile: Profile, moments: &Moments) -> Value {
+    let mut json = json!({ "id": format!("{name}/statistics") });
+    parameters(&mut json, model, profile);
+    json["expect"] = moments.json();
+    json
+}
+
+/// Puts the parameters of a case into it.
+fn parameters(json: &mut Value, model: &impl Model, profile: Profile) {
+    for (key, value) in model.stated().as_object().into_iter().flatten() {
+        json[key] = value.clone();
+    }
+    if model.looks_up() {
+        json["profile"] = profile.json();
+        json["knowledge"] = json!({ "majorant": profile.majorant() });
     }
 }
 

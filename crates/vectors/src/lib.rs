@@ -26,17 +26,22 @@
 //! assert!(judge(&case.json, &answer, Precision::Binary64).is_err());
 //! ```
 //!
+//! Headers state exact moments of each set of parameters, from the law of the estimator by quadrature over the pieces of the profile: [`ask_statistics`] judges
+//! estimates that a port makes from a generator of its own.
+//!
 //! Logarithms and exponentials of the exact run are rounded once. They come from no library that a later version of this project may change.
 
 mod arithmetic;
 mod case;
 mod check;
 pub mod kinds;
+mod moments;
 mod number;
 mod perturbed;
 mod profile;
 mod run;
 mod script;
+mod statistics;
 mod tolerance;
 
 pub use arithmetic::{Arithmetic, Binary64, Exact};
@@ -48,3 +53,4 @@ pub use perturbed::{Noise, Perturbed, Precision};
 pub use profile::Profile;
 pub use run::{Event, Outcome, Run};
 pub use script::{Draw, Script};
+pub use statistics::{Scores, ask_statistics, asked_statistics, judge_statistics};

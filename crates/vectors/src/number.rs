@@ -32,6 +32,18 @@ pub trait Number:
     /// The angle of the point (x, self) in \[−π, π\].
     fn atan2(&self, x: &Self) -> Self;
 
+    /// e^x − 1.
+    fn exp_m1(&self) -> Self;
+
+    /// ln(1 + x).
+    fn ln_1p(&self) -> Self;
+
+    /// cos x.
+    fn cos(&self) -> Self;
+
+    /// sinh x.
+    fn sinh(&self) -> Self;
+
     /// The lesser of two.
     #[must_use]
     fn min(self, other: Self) -> Self {
@@ -126,6 +138,22 @@ impl Number for Precise {
     fn atan2(&self, x: &Self) -> Self {
         Self(self.0.atan2(&x.0))
     }
+
+    fn exp_m1(&self) -> Self {
+        Self(self.0.exp_m1())
+    }
+
+    fn ln_1p(&self) -> Self {
+        Self(self.0.ln_1p())
+    }
+
+    fn cos(&self) -> Self {
+        Self(self.0.cos())
+    }
+
+    fn sinh(&self) -> Self {
+        Self(self.0.sinh())
+    }
 }
 
 /// A double, with functions that are rounded once.
@@ -152,6 +180,22 @@ impl Number for f64 {
 
     fn atan2(&self, x: &Self) -> Self {
         Precise::of(*self).atan2(&Precise::of(*x)).to_f64()
+    }
+
+    fn exp_m1(&self) -> Self {
+        Precise::of(*self).exp_m1().to_f64()
+    }
+
+    fn ln_1p(&self) -> Self {
+        Precise::of(*self).ln_1p().to_f64()
+    }
+
+    fn cos(&self) -> Self {
+        Precise::of(*self).cos().to_f64()
+    }
+
+    fn sinh(&self) -> Self {
+        Precise::of(*self).sinh().to_f64()
     }
 }
 

@@ -188,6 +188,22 @@ impl Number for Perturbed<'_> {
     fn atan2(&self, x: &Self) -> Self {
         self.function(libm::atan2(self.value, x.value), x.noise)
     }
+
+    fn exp_m1(&self) -> Self {
+        self.function(libm::expm1(self.value), None)
+    }
+
+    fn ln_1p(&self) -> Self {
+        self.function(libm::log1p(self.value), None)
+    }
+
+    fn cos(&self) -> Self {
+        self.function(libm::cos(self.value), None)
+    }
+
+    fn sinh(&self) -> Self {
+        self.function(libm::sinh(self.value), None)
+    }
 }
 
 #[cfg(test)]

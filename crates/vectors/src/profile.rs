@@ -19,6 +19,12 @@ impl Profile {
     /// Half everywhere, on a length of 4.
     pub const EVEN: Self = Self { s: &[0.0, 4.0], sigma_t: &[0.5, 0.5] };
 
+    /// Two pieces that rise from nothing to 2 and stay there, on a length of 2; optical thickness 3.
+    pub const RAMP: Self = Self { s: &[0.0, 1.0, 2.0], sigma_t: &[0.0, 2.0, 2.0] };
+
+    /// Two pieces up to 2 and down to 1, on a length of 1: many walks come through; optical thickness 11/8.
+    pub const HILL: Self = Self { s: &[0.0, 0.5, 1.0], sigma_t: &[0.5, 2.0, 1.0] };
+
     /// The length \[length\].
     #[must_use]
     pub fn length(&self) -> f64 {
@@ -39,6 +45,22 @@ impl Profile {
         let t = (s.clone() - N::of(self.s[piece])) / N::of(self.s[piece + 1] - self.s[piece]);
         let t = t.max(N::of(0.0)).min(N::of(1.0));
         (N::of(1.0) - t.clone()) * N::of(self.sigma_t[piece]) + t * N::of(self.sigma_t[piece + 1])
+    }
+
+    /// ∫ σ_t from 0 to a distance \[1\]: whole pieces, then a trapezoid.
+    #[must_use]
+    pub fn thickness<N: Number>(&self, s: &N) -> N {
+        let half = N::of(0.5);
+        let mut sum = N::of(0.0);
+        for i in 0..self.s.len() - 1 {
+            if *s < N::of(self.s[i + 1]) {
+                let ends = N::of(self.sigma_t[i]) + self.at(s);
+                return sum + half * (s.clone() - N::of(self.s[i])) * ends;
+            }
+            let ends = N::of(self.sigma_t[i] + self.sigma_t[i + 1]);
+            sum = sum + half.clone() * N::of(self.s[i + 1] - self.s[i]) * ends;
+        }
+        sum
     }
 
     /// As cases state it.

@@ -46,6 +46,21 @@ impl<N> Outcome<N> {
     pub fn of(value: N) -> Self {
         Self { event: None, values: vec![value] }
     }
+
+    /// Several numbers.
+    pub fn all(values: impl Into<Vec<N>>) -> Self {
+        Self { event: None, values: values.into() }
+    }
+
+    /// A flight that collided at a distance.
+    pub fn collided(distance: N, weight: N) -> Self {
+        Self { event: Some(Event::Collided), values: vec![distance, weight] }
+    }
+
+    /// A flight that escaped at the end of a profile of this length.
+    pub fn escaped(length: N, weight: N) -> Self {
+        Self { event: Some(Event::Escaped), values: vec![length, weight] }
+    }
 }
 
 /// A look-up.
@@ -67,6 +82,8 @@ pub struct Run<'a, A: Arithmetic> {
     profile: Profile,
     /// Uses of the variates drawn so far.
     pub(crate) uses: Vec<Use>,
+    /// Decisions so far that neither variates nor look-ups show.
+    pub(crate) decisions: Vec<bool>,
     /// Look-ups so far.
     pub(crate) lookups: Vec<Lookup<A::Number>>,
 }
@@ -74,7 +91,7 @@ pub struct Run<'a, A: Arithmetic> {
 impl<'a, A: Arithmetic> Run<'a, A> {
     /// A run that has done nothing yet.
     pub fn new(arithmetic: A, script: &'a Script, profile: Profile) -> Self {
-        Self { arithmetic, script, profile, uses: Vec::new(), lookups: Vec::new() }
+        Self { arithmetic, script, profile, uses: Vec::new(), decisions: Vec::new(), lookups: Vec::new() }
     }
 
     /// The number x.
@@ -87,6 +104,16 @@ impl<'a, A: Arithmetic> Run<'a, A> {
         self.arithmetic.input(x)
     }
 
+    /// The profile.
+    pub fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    /// Variates drawn so far.
+    pub(crate) fn drawn_so_far(&self) -> usize {
+        self.uses.len()
+    }
+
     /// The length of the profile \[length\].
     pub fn length(&self) -> f64 {
         self.profile.length()
@@ -97,14 +124,17 @@ impl<'a, A: Arithmetic> Run<'a, A> {
         self.profile.majorant()
     }
 
-    /// The next variate.
-    ///
-    /// # Panics
-    /// Of scripts with an exponential that no variate has, where it is asked for as a uniform variate.
+    /// The next variate; 1/2 for an exponential that no variate has, which only a mistaken run asks for.
     pub fn uniform(&mut self) -> A::Number {
-        let k = self.script.get(self.uses.len()).k().expect("a uniform variate is one of the lattice");
+        let k = self.script.get(self.uses.len()).k().unwrap_or(1 << 52);
         self.uses.push(Use::Uniform);
         self.arithmetic.uniform(k)
+    }
+
+    /// A decision that neither a variate more nor a look-up shows: a port must make the same.
+    pub(crate) fn decided(&mut self, is_so: bool) -> bool {
+        self.decisions.push(is_so);
+        is_so
     }
 
     /// The uniform variate of this number once more.

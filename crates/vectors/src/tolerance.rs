@@ -18,6 +18,7 @@ pub(crate) struct Finished {
     pub(crate) event: Option<Event>,
     pub(crate) values: Vec<f64>,
     pub(crate) uses: Vec<Use>,
+    pub(crate) decisions: Vec<bool>,
     /// s, σ_t and the weight behind each look-up.
     pub(crate) trace: Vec<(f64, f64, Option<f64>)>,
 }
@@ -42,12 +43,16 @@ impl Finished {
                 .map(|seen| (double(&seen.s), double(&seen.sigma_t), seen.weight.as_ref().map(double)))
                 .collect(),
             uses: run.uses,
+            decisions: run.decisions,
         }
     }
 
     /// True where both decided alike.
     pub(crate) fn decides_as(&self, other: &Self) -> bool {
-        self.event == other.event && self.uses == other.uses && self.trace.len() == other.trace.len()
+        self.event == other.event
+            && self.uses == other.uses
+            && self.decisions == other.decisions
+            && self.trace.len() == other.trace.len()
     }
 }
 

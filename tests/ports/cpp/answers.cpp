@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -116,15 +117,26 @@ struct Source {
     }
 };
 
+// Variates of a generator of its own, 24 bits each, for statistics: in single precision none is 1.
+struct Generator {
+    std::mt19937_64 bits;
+
+    Real uniform() { return Real(double(bits() >> 40) * 0x1p-24); }
+    Real exponential() { return -std::log(Real(1) - uniform()); }
+};
+
 // Extinction linear between nodes, or what the trace of the case has where the field is scripted.
 struct Field {
+    static constexpr std::size_t most_kept = 1000;  // distances: those of a case
+
     std::vector<Real> s, sigma_t;
     const Json& trace;
     bool scripted;
     std::vector<Real>& lookups;
+    std::size_t& count;
 
     Real operator()(Real at) const {
-        lookups.push_back(at);
+        if (++count <= most_kept) lookups.push_back(at);
         if (scripted) return lookups.size() <= trace.items.size() ? Real(trace[lookups.size() - 1][1].number()) : Real(0);
         std::size_t piece = 0;
         while (piece + 2 < s.size() && s[piece + 1] <= at) ++piece;
@@ -134,13 +146,17 @@ struct Field {
     }
 };
 
-static void print(const Json& json) {
-    const std::string layer = json["layer"].text;
-    Source source{json["draws"], layer != "uniforms"};
-    std::vector<Real> lookups, values;
-    const Field field{json["profile"]["s"].numbers(), json["profile"]["sigma_t"].numbers(), json["trace"], layer == "field", lookups};
-    const Real length = field.s.empty() ? Real(0) : field.s.back(), majorant = Real(json["knowledge"]["majorant"].number());
+// One estimate by the parameters of a case.
+struct Estimate {
+    std::vector<Real> values;
     const char* event = nullptr;
+};
+
+template <class Source>
+static Estimate estimate(const Json& json, const Field& field, Source& source) {
+    Estimate made;
+    std::vector<Real>& values = made.values;
+    const Real length = field.s.empty() ? Real(0) : field.s.back(), majorant = Real(json["knowledge"]["majorant"].number());
     if (const Json& estimator = json["estimator"]; !estimator.is_null()) {
         const std::string& kind = estimator["kind"].text;
         if (kind == "double_particle") {
@@ -160,7 +176,7 @@ static void print(const Json& json) {
         const auto flight =
             fairflight::spectral_tracking(field, length, {c[0], c[1], c[2]}, Real(sampler["sigma_samp"].number()), source);
         values = {flight.weights.begin(), flight.weights.end()};
-        event = flight.collided ? "collided" : "escaped";
+        made.event = flight.collided ? "collided" : "escaped";
     } else if (sampler["kind"].text == "equiangular") {
         const std::vector<Real> origin = sampler["origin"].numbers(), direction = sampler["direction"].numbers(),
                                 light = sampler["light"].numbers();
@@ -177,14 +193,50 @@ static void print(const Json& json) {
         const Real g = Real(json["phase"]["g"].number()), cosine = fairflight::henyey_greenstein_cosine(g, source.uniform());
         values = {cosine, fairflight::henyey_greenstein(g, cosine)};
     }
-    std::printf("{\"id\":\"%s\",\"draws\":%zu,\"lookups\":%zu", json["id"].text.c_str(), source.drawn, lookups.size());
-    if (event) std::printf(",\"event\":\"%s\"", event);
+    return made;
+}
+
+static Field field_of(const Json& json, std::vector<Real>& lookups, std::size_t& count) {
+    const bool scripted = json["layer"].text == "field";
+    return {json["profile"]["s"].numbers(), json["profile"]["sigma_t"].numbers(), json["trace"], scripted, lookups, count};
+}
+
+// Mean, variance and look-ups of as many estimates as are asked for.
+static void print_statistics(const Json& json) {
+    const std::size_t samples = std::size_t(json["samples"].integer());
+    Generator source{std::mt19937_64(json["seed"].integer())};
+    std::vector<Real> lookups;
+    std::size_t count = 0;
+    const Field field = field_of(json, lookups, count);
+    // Welford's sums.
+    double mean = 0, squares = 0;
+    for (std::size_t i = 1; i <= samples; ++i) {
+        const Estimate made = estimate(json, field, source);
+        // A flight that collided scores nothing.
+        const double score = made.event && std::string(made.event) == "collided" ? 0 : double(made.values.at(0));
+        const double apart = score - mean;
+        mean += apart / double(i);
+        squares += apart * (score - mean);
+    }
+    std::printf("{\"id\":\"%s\",\"mean\":%.17g,\"variance\":%.17g,\"lookups\":%.17g}\n", json["id"].text.c_str(), mean,
+                squares / double(samples - 1), double(count) / double(samples));
+}
+
+static void print(const Json& json) {
+    if (json["layer"].text == "statistics") return print_statistics(json);
+    Source source{json["draws"], json["layer"].text != "uniforms"};
+    std::vector<Real> lookups;
+    std::size_t count = 0;
+    const Field field = field_of(json, lookups, count);
+    const Estimate made = estimate(json, field, source);
+    std::printf("{\"id\":\"%s\",\"draws\":%zu,\"lookups\":%zu", json["id"].text.c_str(), source.drawn, count);
+    if (made.event) std::printf(",\"event\":\"%s\"", made.event);
     const auto numbers = [](const char* name, const std::vector<Real>& all) {
         std::printf(",\"%s\":[", name);
         for (std::size_t i = 0; i < all.size(); ++i) std::printf("%s%.17g", i ? "," : "", double(all[i]));
         std::printf("]");
     };
-    numbers("value", values);
+    numbers("value", made.values);
     numbers("s", lookups);
     std::printf("}\n");
 }

@@ -37,6 +37,19 @@ class Source:
         return -np.log(real(1) - real(draw[1] * 2.0**-53))
 
 
+class Generator:
+    """Variates of numpy's generator, 24 bits each in single precision, for statistics."""
+
+    def __init__(self, seed):
+        self.generator = np.random.default_rng(seed)
+
+    def uniform(self):
+        return real(self.generator.integers(1 << 24) * 2.0**-24 if real == np.float32 else self.generator.random())
+
+    def exponential(self):
+        return -np.log(real(1) - self.uniform())
+
+
 class Field:
     """Extinction linear between nodes, or what the trace has where the field is scripted."""
 
@@ -45,9 +58,12 @@ class Field:
         self.sigma_t = [real(sigma_t) for sigma_t in case["profile"]["sigma_t"]]
         self.trace = case["trace"] if case["layer"] == "field" else None
         self.lookups = []
+        self.count = 0
 
     def __call__(self, at):
-        self.lookups.append(float(at))
+        self.count += 1
+        if self.count <= MOST_KEPT:
+            self.lookups.append(float(at))
         if self.trace is not None:
             return real(self.trace[len(self.lookups) - 1][1]) if len(self.lookups) <= len(self.trace) else real(0)
         piece = 0
@@ -57,12 +73,39 @@ class Field:
         return (real(1) - t) * self.sigma_t[piece] + t * self.sigma_t[piece + 1]
 
 
+# Look-ups whose distances are kept: those of a case.
+MOST_KEPT = 1000
+
+
+def statistics(case):
+    """Mean, variance and look-ups of as many estimates as are asked for."""
+    source, field = Generator(case["seed"]), Field(case) if "profile" in case else None
+    scores = []
+    for _ in range(case["samples"]):
+        values, event = estimate(case, source, field)
+        # A flight that collided scores nothing.
+        scores.append(0.0 if event == "collided" else float(values[0]))
+    lookups = field.count / len(scores) if field else 0
+    return {"id": case["id"], "mean": np.mean(scores), "variance": np.var(scores, ddof=1), "lookups": lookups}
+
+
 def answer(case):
     source = Source(case["draws"], case["layer"] != "uniforms")
     field = Field(case) if "profile" in case else None
+    values, event = estimate(case, source, field)
+    said = {"id": case["id"], "value": [float(value) for value in values], "draws": source.drawn}
+    if event:
+        said["event"] = event
+    if field:
+        said["lookups"], said["s"] = field.count, field.lookups
+    return said
+
+
+def estimate(case, source, field):
+    """Values of one estimate, and the end of a flight."""
+    event = None
     length = field.s[-1] if field else None
     majorant = real(case["knowledge"]["majorant"]) if field else None
-    said = {"id": case["id"]}
     if "estimator" in case:
         estimator = case["estimator"]
         if estimator["kind"] == "double_particle":
@@ -90,13 +133,10 @@ def answer(case):
     else:
         coefficients, sigma_samp = np.array(case["coefficients"], real), real(case["sampler"]["sigma_samp"])
         distance, values = ports.spectral_tracking(field, length, coefficients, sigma_samp, source, real)
-        said["event"] = "escaped" if distance is None else "collided"
-    said["value"] = [float(value) for value in values]
-    said["draws"] = source.drawn
-    if field:
-        said["lookups"], said["s"] = len(field.lookups), field.lookups
-    return said
+        event = "escaped" if distance is None else "collided"
+    return values, event
 
 
 for line in sys.stdin:
-    print(json.dumps(answer(json.loads(line))), flush=True)
+    asked = json.loads(line)
+    print(json.dumps(statistics(asked) if asked["layer"] == "statistics" else answer(asked)), flush=True)

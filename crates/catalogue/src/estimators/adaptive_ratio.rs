@@ -71,6 +71,10 @@ fn twins() -> Vec<Twin> {
                 let field = Bounded::new(unit_cells(&[1.0, 0.25]), 1.25).expect(LAWFUL);
                 judged_as(&right, &KnowsTheLookup { floor: 0.1 }, &field, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, floor) = (vector.bounded(KIND.name)?, vector.estimator("floor")?);
+            Some(KnowsTheLookup { floor }.draw(&field, source).into())
+        }),
     ]
 }

@@ -72,5 +72,9 @@ fn twins() -> Vec<Twin> {
             let right = GeneralisedPoisson::new(2.0, 3.0).expect(LAWFUL);
             judged_as(&right, &ForgetsItsRate { pivot: 2.0, rate: 3.0 }, &unit_cells(&[1.0, 0.25]), run)
         },
-    )]
+    )
+    .answers(|vector, source| {
+        let (pivot, rate) = (vector.estimator("pivot")?, vector.estimator("rate")?);
+        Some(ForgetsItsRate { pivot, rate }.draw(vector.of(KIND.name)?, source).into())
+    })]
 }

@@ -128,6 +128,10 @@ fn twins() -> Vec<Twin> {
                 let field = Bounded::new(constant(0.5, 4.0), 1.0).expect(LAWFUL);
                 judged_as(&JitteredRatio::new(1.0).expect(LAWFUL), &ContinuesTooRarely, &field, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let field = vector.of(KIND.name).filter(|field| field.bound_cells().is_empty())?;
+            (vector.estimator("epsilon")? == 1.0).then(|| ContinuesTooRarely.draw(&field, source).into())
+        }),
     ]
 }

@@ -43,18 +43,22 @@ fn subjects() -> Vec<Subject> {
 /// Flights of each estimate of a twin.
 const SPLITS: u32 = 4;
 
-/// Algorithm 2 in a majorant of 1, with the optical distance of the first collision as a function of u in \[0, 1) and p_V.
-struct WrongFirstStep(fn(f64, f64) -> f64);
+/// Algorithm 2 with the optical distance of the first collision as a function of u in \[0, 1) and p_V.
+struct WrongFirstStep {
+    splits: u32,
+    majorant: f64,
+    first: fn(f64, f64) -> f64,
+}
 
 impl<F: Extinction> Wrong<F> for WrongFirstStep {
     fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
-        let field = Bounded::new(field, 1.0).expect(LAWFUL);
+        let field = Bounded::new(field, self.majorant).expect(LAWFUL);
         let p_volume = -(-field.majorant() * field.length()).exp_m1();
-        let n = f64::from(SPLITS);
+        let n = f64::from(self.splits);
         let shift = source.next_uniform();
         let mut escaped = 0.0;
-        for k in 0..SPLITS {
-            let depth = (self.0)((f64::from(k) + shift) / n, p_volume);
+        for k in 0..self.splits {
+            let depth = (self.first)((f64::from(k) + shift) / n, p_volume);
             escaped += flight(&field, depth, source);
         }
         1.0 - p_volume + p_volume * escaped / n
@@ -99,7 +103,13 @@ fn twin(id: &'static str, mistake: &'static str, z: f64, first: fn(f64, f64) -> 
     let profile = "sigma_t 1, 0.1 (length 1 each), majorant 1, 4 splits";
     Twin::new("line integral", id, mistake, profile, (50_000, Evident::Mean { z }), move |run| {
         let right = LineIntegral::new(SPLITS).expect(LAWFUL);
-        judged_as(&right, &WrongFirstStep(first), &unit_cells(&[1.0, 0.1]), run)
+        let wrong = WrongFirstStep { splits: SPLITS, majorant: 1.0, first };
+        judged_as(&right, &wrong, &unit_cells(&[1.0, 0.1]), run)
+    })
+    .answers(move |vector, source| {
+        let field = vector.of(KIND.name)?;
+        let (splits, majorant) = (vector.estimator("splits")? as u32, vector.estimator("majorant")?);
+        Some(WrongFirstStep { splits, majorant, first }.draw(field, source).into())
     })
 }
 

@@ -81,6 +81,11 @@ fn twins() -> Vec<Twin> {
                 let field = Bounded::new(unit_cells(&[1.0, 0.25]), 1.25).expect(LAWFUL);
                 judged_as(&right, &WithoutTheStart, &field, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let field = vector.bounded(KIND.name)?;
+            let is_ratio = (vector.word)("/estimator/version")? == "ratio";
+            is_ratio.then(|| WithoutTheStart.draw(&field, source).into())
+        }),
     ]
 }

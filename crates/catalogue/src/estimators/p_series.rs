@@ -84,6 +84,11 @@ fn twins() -> Vec<Twin> {
                 let right = PSeries::new(PSeriesVersion::Cmf, 4.0).expect(LAWFUL);
                 judged_as(&right, &CappedOrder { pivot: 4.0 }, &unit_cells(&[1.0, 0.25]), run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, pivot) = (vector.of(KIND.name)?, vector.estimator("pivot")?);
+            let is_cmf = (vector.word)("/estimator/version")? == "cmf";
+            is_cmf.then(|| CappedOrder { pivot }.draw(field, source).into())
+        }),
     ]
 }

@@ -9,6 +9,7 @@ use crate::hard_cases::{Profile, Subject};
 use crate::profiles::constant;
 use crate::twins::trial::{Wrong, judged, judged_as, theory_on};
 use crate::twins::{Evident, Rejection, Twin};
+use crate::vectors::{Answer, Variates, Vector};
 use fairflight_collision::{Albedo, CollisionModel, SingleParticle, Version};
 use fairflight_laws::{CheckResult, Run};
 use fairflight_media::{Constant, Extinction, Vacuum};
@@ -126,6 +127,14 @@ fn outside_the_terminating_domain(sigma_t: f64, length: f64, sampling: f64, run:
     Rejection { rejected: rejection.rejected && refused, ..rejection }
 }
 
+/// The terminating version on a test vector of another.
+fn terminating(vector: &Vector<'_>, source: &mut Variates<'_>) -> Option<Answer> {
+    let (field, sampling, control) = vector.tracked(KIND.name)?;
+    (vector.word)("/estimator/version").filter(|version| *version != "terminating")?;
+    let model = single(Version::Terminating, vector.estimator("albedo")?);
+    Some(Tracking::new(model, control, sampling).estimate(field, source).into())
+}
+
 fn twins() -> Vec<Twin> {
     vec![
         // |1 − r| = 1.5 is no probability: the weight is −1 for sure, E = exp(−2 · 0.2) for exp(−0.5). Judged with the
@@ -137,7 +146,8 @@ fn twins() -> Vec<Twin> {
             "sigma_t 1, length 0.5, sigma_samp 0.4, albedo 0",
             (200_000, Evident::Mean { z: 29.8 }),
             |run| outside_the_terminating_domain(1.0, 0.5, 0.4, run),
-        ),
+        )
+        .answers(terminating),
         // E = 1, what a renderer makes of hard case 5, for e; Var/T² = exp(4 · 0.25²) − 1 = 0.284.
         Twin::new(
             "single particle",
@@ -146,7 +156,8 @@ fn twins() -> Vec<Twin> {
             "sigma_t −0.5, length 2, sigma_samp 2, albedo 0",
             (50_000, Evident::Mean { z: 265.0 }),
             |run| outside_the_terminating_domain(-0.5, 2.0, 2.0, run),
-        ),
+        )
+        .answers(terminating),
         // a = 0.5, r = 1.25: only walks without a collision survive, E = exp(−1.6) for exp(−2).
         Twin::new(
             "single particle",
@@ -162,6 +173,17 @@ fn twins() -> Vec<Twin> {
                 let right = Tracking::new(model, Vacuum::new(2.0), sampling);
                 judged_as(&right, &StopsBelowZero { model, sampling }, &field, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, sampling, control) = vector.tracked(KIND.name)?;
+            let version = match (vector.word)("/estimator/version")? {
+                "non_terminating" => Version::NonTerminating,
+                "adaptive" => Version::Adaptive,
+                _ => Version::Terminating,
+            };
+            let model = single(version, vector.estimator("albedo")?);
+            let has_control = control.sigma_t(0.0) > 0.0;
+            (!has_control).then(|| StopsBelowZero { model, sampling }.draw(field, source).into())
+        }),
     ]
 }

@@ -93,6 +93,14 @@ fn twins() -> Vec<Twin> {
                 let right = Telescoping::new(2, level_ratio, CombShape::EndpointMatched).expect(LAWFUL);
                 judged_as(&right, &EvenHalfOnly { comb: right.comb(), level_ratio }, &tent, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let field = vector.of(KIND.name)?;
+            let is_matched = vector.estimator("endpoint_matching")? == 1.0;
+            let shape = if is_matched { CombShape::EndpointMatched } else { CombShape::Uniform };
+            let comb = Comb::new(vector.estimator("teeth")? as u32, shape).ok()?;
+            let level_ratio = vector.estimator("level_ratio")?;
+            Some(EvenHalfOnly { comb, level_ratio }.draw(field, source).into())
+        }),
     ]
 }

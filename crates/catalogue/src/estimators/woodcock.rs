@@ -10,7 +10,7 @@ use crate::twins::trial::{Pretending, Wrong, judged_with_scores, theory_on};
 use crate::twins::{Evident, Rejection, Twin};
 use fairflight_laws::scores;
 use fairflight_laws::transmittance::Admitted;
-use fairflight_media::{Bounded, Extinction, Watched};
+use fairflight_media::{Bounded, Extinction, Majorant, Watched};
 use fairflight_sources::{Scripted, UniformSource};
 use fairflight_transmittance::{TransmittanceEstimator, Woodcock};
 use std::sync::Arc;
@@ -70,7 +70,11 @@ fn twins() -> Vec<Twin> {
                 // Of scores of 0 and 1 the variance says what the mean does.
                 Rejection { rejected, variance_z: None, ..statistical }
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let field = vector.of("woodcock")?;
+            Some(TooLow(0.7 * field.majorant()).draw(field, source).into())
+        }),
         Twin::new(
             "woodcock",
             "collides_in_empty_space",
@@ -84,6 +88,19 @@ fn twins() -> Vec<Twin> {
                 let rejected = ours == 1.0 && collides_as_printed(0.0, 1.0, 0.0);
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, mut s) = (vector.of("woodcock")?, 0.0);
+            let majorant = field.majorant();
+            loop {
+                s += source.next_exponential() / majorant;
+                if s >= field.length() {
+                    return Some(1.0.into());
+                }
+                if collides_as_printed(field.sigma_t(s), majorant, source.next_uniform()) {
+                    return Some(0.0.into());
+                }
+            }
+        }),
     ]
 }

@@ -10,6 +10,7 @@ use fairflight_laws::exact::renewal::{self, Scoring, relative_variance};
 use fairflight_laws::exact::thickness::{self, deviation_of_integral, deviation_of_inverse};
 use fairflight_media::{Bounded, Constant, Extinction, OpticalThickness, PiecewiseLinear};
 use fairflight_sources::{LARGEST_VARIATE, Scripted, UniformSource};
+use fairflight_transmittance::{NextFlight, NextFlightVersion, Regular, TransmittanceEstimator};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
 
@@ -36,11 +37,23 @@ impl<F: OpticalThickness> FreeFlight<F> for Early {
 }
 
 /// A thickness by the midpoint rule on many cells.
-fn midpoints(field: &PiecewiseLinear, from: f64, to: f64) -> f64 {
+fn midpoints<F: Extinction>(field: &F, from: f64, to: f64) -> f64 {
     const CELLS: u32 = 1000;
     let step = (to - from) / f64::from(CELLS);
     // Right: the closed form, or borders where the slope jumps.
     (0..CELLS).map(|i| step * field.sigma_t(from + (f64::from(i) + 0.5) * step)).sum()
+}
+
+/// A source of 256 levels.
+struct EightBits<S>(S);
+
+impl<S: UniformSource> UniformSource for EightBits<S> {
+    fn next_uniform(&mut self) -> f64 {
+        (256.0 * self.0.next_uniform()).floor() / 256.0 // right: the variate itself
+    }
+    fn next_exponential(&mut self) -> f64 {
+        self.0.next_exponential()
+    }
 }
 
 /// Lists the twins.
@@ -52,7 +65,8 @@ pub(super) fn twins() -> Vec<Twin> {
             "the root to four digits after the point, for the one that is nearest",
             "piecewise linear",
             || (deviation_of_inverse(&tent(), &Early), thickness::GRANTED),
-        ),
+        )
+        .answers(|vector, source| vector.flown(Early.sample(vector.of("inversion_flight")?, source))),
         twin(
             "optical thickness",
             "thickness_by_midpoints",
@@ -62,7 +76,14 @@ pub(super) fn twins() -> Vec<Twin> {
                 let wrong = Misstated { field: tent(), thickness: midpoints };
                 (deviation_of_integral(&wrong), thickness::GRANTED)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let wrong = Misstated {
+                field: vector.of("regular")?,
+                thickness: |field, from, to| midpoints(field, from, to),
+            };
+            Some(Regular.estimate(&wrong, source).into())
+        }),
         twin(
             "directions of an environment map",
             "pixel_without_a_border",
@@ -95,7 +116,13 @@ pub(super) fn twins() -> Vec<Twin> {
                 });
                 ((found / (straight(1.0) + (1.0 - share) * straight(0.6)) - 1.0).abs(), 1e-13)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let field = vector.bounded("next_flight")?;
+            let is_delta = (vector.word)("/estimator/version")? == "delta";
+            let delta = NextFlight::new(NextFlightVersion::Delta);
+            is_delta.then(|| delta.estimate(&field, &mut EightBits(source)).into())
+        }),
         twin(
             "next flight",
             "variance_of_delta_without_ends",
@@ -112,7 +139,6 @@ pub(super) fn twins() -> Vec<Twin> {
 }
 
 fn delta(field: &Bounded<Constant>, source: &mut impl UniformSource) -> f64 {
-    use fairflight_transmittance::{NextFlight, NextFlightVersion, TransmittanceEstimator};
     NextFlight::new(NextFlightVersion::Delta).estimate(field, source)
 }
 

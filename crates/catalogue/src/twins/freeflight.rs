@@ -3,6 +3,7 @@
 use super::trial::{Pretending, Wrong};
 use super::{Evident, Rejection, Twin};
 use crate::profiles::{constant, unit_cells};
+use crate::vectors::{Answer, Variates, Vector};
 use fairflight_collision::{Outcome, SingleOutcome, SingleParticle, Version};
 use fairflight_freeflight::{ClosedForm, Flight, FreeFlight, Tracking, Woodcock};
 use fairflight_laws::Run;
@@ -90,6 +91,19 @@ pub(super) fn judged<
     Rejection::of_flights(check_flights(field, Pretending(twin), &expected, run), shows)
 }
 
+/// Tracking without a control on a test vector.
+fn tracked(taken_for: [fn(f64) -> f64; 2], vector: &Vector<'_>, source: &mut Variates<'_>) -> Option<Answer> {
+    let field = vector.of("tracking_flight")?;
+    let sampling = Constant::new(vector.sampler("sigma_samp")?, field.length()).ok()?;
+    let version = match (vector.word)("/sampler/version")? {
+        "non_terminating" => Version::NonTerminating,
+        "adaptive" => Version::Adaptive,
+        _ => Version::Terminating,
+    };
+    let model = *Tracking::new(version, sampling).model();
+    vector.flown(WithoutEnergy { model, sampling, taken_for }.draw(field, source))
+}
+
 fn without_energy(taken_for: [fn(f64) -> f64; 2], shows: &str, run: Run) -> Rejection {
     let (field, sampling) = (constant(1.0, 1.0), constant(0.8, 1.0));
     let right = Tracking::new(Version::NonTerminating, sampling);
@@ -114,7 +128,12 @@ pub(super) fn twins() -> Vec<Twin> {
                 let (right, also) = (Woodcock::new(cells.clone()), cells.breakpoints());
                 judged(&field, (&right, &also), Weights::One, &PreviousCell(cells), "escaped", run)
             },
-        ).about(["woodcock_flight"]),
+        )
+        .about(["woodcock_flight"])
+        .answers(|vector, source| {
+            let (field, cells) = (vector.of("woodcock_flight")?, vector.rates("/sampler/majorant")?);
+            vector.flown(PreviousCell(cells).draw(field, source))
+        }),
         // r = 5/4, energies ±3/2: E = (1 − e^−1)/1.5 = 0.4214 for 0.6321; the variance is 3 (1 − e^−½) − 0.6321² = 0.7808.
         Twin::new(
             "free flight by tracking",
@@ -123,7 +142,9 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 1, sigma_samp 0.8, non-terminating",
             (50_000, Evident::Mean { z: 53.3 }),
             |run| without_energy([|_| 1.0, |energy| energy], "collided", run),
-        ).about(["tracking_flight"]),
+        )
+        .about(["tracking_flight"])
+        .answers(|vector, source| tracked([|_| 1.0, |energy| energy], vector, source)),
         // E = exp(−0.8 · 5/6) = 0.5134 for e^−1 = 0.3679; the variance is e^−½ − e^−2 = 0.4712.
         Twin::new(
             "free flight by tracking",
@@ -132,7 +153,9 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 1, sigma_samp 0.8, non-terminating",
             (50_000, Evident::Mean { z: 47.4 }),
             |run| without_energy([|energy| energy, |_| 1.0], "escaped", run),
-        ).about(["tracking_flight"]),
+        )
+        .about(["tracking_flight"])
+        .answers(|vector, source| tracked([|energy| energy, |_| 1.0], vector, source)),
         Twin::new(
             "free flight by woodcock",
             "flight_collides_in_empty_space",
@@ -149,6 +172,13 @@ pub(super) fn twins() -> Vec<Twin> {
                 let rejected = ours.distance().is_none() && twin.distance().is_some();
                 Rejection::exact(rejected, "collides where there is nothing; ours goes on")
             },
-        ).about(["woodcock_flight"]),
+        )
+        .about(["woodcock_flight"])
+        .answers(|vector, source| {
+            let field = vector.of("woodcock_flight")?;
+            let [value] = vector.numbers("/sampler/majorant/values")[..] else { return None };
+            let majorant = Constant::new(value, field.length()).ok()?;
+            vector.flown(CollidesAsPrinted(majorant).draw(field, source))
+        }),
     ]
 }

@@ -45,6 +45,10 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = JitteredFlight::new(1.0).expect(LAWFUL);
                 freeflight::judged(&half(), (&right, &[]), Weights::One, &WithoutSurvivalTest, "escaped", run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let field = vector.of("jittered_flight").filter(|_| vector.sampler("epsilon") == Some(1.0))?;
+            vector.flown(WithoutSurvivalTest.draw(field, source))
+        }),
     ]
 }

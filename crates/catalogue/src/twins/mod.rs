@@ -18,6 +18,7 @@ mod vpl;
 
 use crate::estimators;
 use crate::function::{Function, joined};
+use crate::vectors::{Answer, Replay, Variates, Vector};
 use fairflight_laws::Run;
 use fairflight_laws::freeflight::{FlightEvidence, FlightRefusal};
 use fairflight_stats::Verdict;
@@ -99,6 +100,7 @@ pub struct Twin {
     /// Evidence by which it is rejected.
     pub evident: Evident,
     function: Function<Rejection>,
+    replay: Option<Replay>,
 }
 
 impl Twin {
@@ -119,7 +121,29 @@ impl Twin {
             samples,
             evident,
             function: Function::new(function),
+            replay: None,
         }
+    }
+
+    /// The same, which makes an answer of the test vectors of its estimator: the answer to a case, `None` of one that it has no parameters for.
+    pub(crate) fn answers(
+        mut self,
+        answer: impl Fn(&Vector<'_>, &mut Variates<'_>) -> Option<Answer> + Send + Sync + 'static,
+    ) -> Self {
+        self.replay = Some(Replay::new(answer));
+        self
+    }
+
+    /// True of a twin of something that has test vectors.
+    #[must_use]
+    pub fn has_vectors(&self) -> bool {
+        self.replay.is_some()
+    }
+
+    /// Its answer to a test vector; `None` of one that is not of its estimator, or that it has no parameters for.
+    #[must_use]
+    pub fn answer(&self, vector: &Vector<'_>, source: &mut Variates<'_>) -> Option<Answer> {
+        self.replay.as_ref()?.answer(vector, source)
     }
 
     /// The same, which the law of these kinds rejects.

@@ -8,6 +8,7 @@ use super::trial::{LAWFUL, judged, theory_on};
 use super::{Evident, Rejection, Twin};
 use crate::paths::doubling::{Lit, Slab};
 use crate::paths::{single_scattering, slab};
+use crate::vectors::Answer;
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_laws::{Run, measure};
 use fairflight_media::phase::Isotropic;
@@ -272,7 +273,18 @@ pub(super) fn twins() -> Vec<Twin> {
                 let right = cube.reference(cube.greatest() * cube.aside() * angle);
                 tried(|source| cube.by_source(|_s| 1.0 / angle, source), &right, derived, run)
             },
-        ).about(["single_scattering"]),
+        )
+        .about(["single_scattering"])
+        .answers(|vector, source| {
+            let length = vector.sampler("length").filter(|_| vector.kind == "equiangular")?;
+            let [origin, direction, light] = ["origin", "direction", "light"]
+                .map(|key| DVec3::from_slice(&vector.numbers(&format!("/sampler/{key}"))));
+            let s = SourceDriven::new(&Line { origin, direction }, length, light).sample(source.next_uniform());
+            let (offset, closest) = (light - origin, (light - origin).dot(direction));
+            let distance = (offset - closest * direction).length();
+            let angle = (length - closest).atan2(distance) - (-closest).atan2(distance);
+            Some(Answer { values: vec![s, 1.0 / angle], collided: None })
+        }),
         // The weights sum to σ/(σ + n p) + p/(p + σ).
         Twin::new(
             "MIS of attenuation and source",
@@ -315,6 +327,12 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(&field, &LineIntegral::new(4).expect(LAWFUL), &[]);
                 judged(&field, &StratifiesEveryStep { splits: 4, majorant: 1.0 }, theory, run)
             },
-        ).about(["line_integral"]),
+        )
+        .about(["line_integral"])
+        .answers(|vector, source| {
+            let field = vector.of("line_integral")?;
+            let (splits, majorant) = (vector.estimator("splits")? as u32, vector.estimator("majorant")?);
+            Some(StratifiesEveryStep { splits, majorant }.estimate(&field, source).into())
+        }),
     ]
 }

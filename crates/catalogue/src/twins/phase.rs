@@ -2,15 +2,17 @@
 
 use super::trial::LAWFUL;
 use super::{Evident, Rejection, Twin};
+use crate::vectors::Answer;
 use fairflight_laws::phase::{check_exactly, check_samples};
-use fairflight_media::phase::HenyeyGreenstein;
+use fairflight_media::phase::{HenyeyGreenstein, Schlick};
 use fairflight_media::{PhaseFunction, Scattered};
-use glam::DVec3;
+use fairflight_sources::UniformSource;
+use glam::{DVec3, dvec3};
 
 /// A phase function whose scattered direction is about the direction back to where the particle came from.
-struct Reversed(HenyeyGreenstein);
+struct Reversed<P>(P);
 
-impl PhaseFunction for Reversed {
+impl<P: PhaseFunction> PhaseFunction for Reversed<P> {
     fn eval(&self, cosine: f64) -> f64 {
         self.0.eval(cosine)
     }
@@ -65,7 +67,15 @@ pub(super) fn twins() -> Vec<Twin> {
                     reason: format!("cosine {}", evidence.cosine.reason),
                 }
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let [x, y, z] = vector.numbers("/incident")[..] else { return None };
+            let (incident, reversed) = (dvec3(x, y, z), Reversed(Schlick::new((vector.number)("/phase/k")?).ok()?));
+            let (u, v) = (source.next_uniform(), source.next_uniform());
+            let Scattered { direction, pdf_solid_angle, .. } = reversed.sample(incident, u, v);
+            let values = vec![incident.dot(direction), direction.length(), pdf_solid_angle];
+            Some(Answer { values, collided: None })
+        }),
         Twin::new(
             "phase function",
             "henyey_greenstein_that_cancels",
@@ -79,6 +89,12 @@ pub(super) fn twins() -> Vec<Twin> {
                     (right, _) => Rejection::exact(false, format!("not told from the right one: {right:?}")),
                 }
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let g = (vector.number)("/phase/g").filter(|g| *g != 0.0)?;
+            let cancelling = Cancelling { g, right: HenyeyGreenstein::new(g).ok()? };
+            let cosine = cancelling.sample_cosine(source.next_uniform());
+            Some(Answer { values: vec![cosine, cancelling.eval(cosine)], collided: None })
+        }),
     ]
 }

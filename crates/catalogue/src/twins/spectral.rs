@@ -3,6 +3,7 @@
 use super::trial::LAWFUL;
 use super::{Evident, Rejection, Twin};
 use crate::profiles::constant;
+use crate::vectors::{Answer, Variates, Vector};
 use fairflight_freeflight::ClosedForm;
 use fairflight_freeflight::spectral::{
     HeroWavelength, MaxScheme, Scheme, SpectralFlight, SpectralFreeFlight, SpectralTracking,
@@ -17,14 +18,13 @@ use fairflight_media::{
 use fairflight_sources::UniformSource;
 
 type Spectrum = Scaled<Constant, 2>;
-type Flight = SpectralFlight<2>;
 
 /// Spectral tracking by the max scheme with other weights: `weigh` has the ratio of the event, and the sizes of it and of the
 /// other one.
 struct Weighing(fn(f64, f64, f64) -> f64);
 
-impl SpectralFreeFlight<Spectrum, 2> for Weighing {
-    fn sample_from(&self, field: &Spectrum, past: [f64; 2], source: &mut impl UniformSource) -> Flight {
+impl<F: SpectralExtinction<N>, const N: usize> SpectralFreeFlight<F, N> for Weighing {
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
         let sampling = constant(1.0, field.length());
         let (mut weights, mut s) = (past, 0.0);
         while let Some(next) = sampling.invert(s, source.next_exponential()) {
@@ -34,13 +34,13 @@ impl SpectralFreeFlight<Spectrum, 2> for Weighing {
             if source.next_uniform() * (collides + passes) < collides {
                 // right: (collides + passes) ratio / collides
                 let weights = std::array::from_fn(|l| weights[l] * (self.0)(ratios[l], collides, passes));
-                return Flight::Collided { distance: s, weights };
+                return SpectralFlight::Collided { distance: s, weights };
             }
             weights = std::array::from_fn(|l| weights[l] * (self.0)(1.0 - ratios[l], passes, collides));
         }
-        Flight::Escaped { weights }
+        SpectralFlight::Escaped { weights }
     }
-    fn admits(&self, _field: &Spectrum, _s: f64, _sigma_t: &[f64; 2]) -> bool {
+    fn admits(&self, _field: &F, _s: f64, _sigma_t: &[f64; N]) -> bool {
         true
     }
 }
@@ -48,25 +48,25 @@ impl SpectralFreeFlight<Spectrum, 2> for Weighing {
 /// Hero wavelength sampling whose collision is weighed by the null collisions before it alone.
 struct ForgetsTheCollision;
 
-impl SpectralFreeFlight<Spectrum, 2> for ForgetsTheCollision {
-    fn sample_from(&self, field: &Spectrum, past: [f64; 2], source: &mut impl UniformSource) -> Flight {
+impl<F: SpectralExtinction<N>, const N: usize> SpectralFreeFlight<F, N> for ForgetsTheCollision {
+    fn sample_from(&self, field: &F, past: [f64; N], source: &mut impl UniformSource) -> SpectralFlight<N> {
         let majorant = constant(1.0, field.length());
-        let hero = usize::from(source.next_uniform() >= 0.5);
+        let hero = (source.next_uniform() * N as f64) as usize;
         let (mut weights, mut s) = (past, 0.0);
         while let Some(next) = majorant.invert(s, source.next_exponential()) {
             s = next;
             let ratios = field.sigma_t(s);
             if source.next_uniform() < ratios[hero] {
                 // right: the ratios enter here as 1 − r do below
-                return Flight::Collided { distance: s, weights };
+                return SpectralFlight::Collided { distance: s, weights };
             }
-            let after: [f64; 2] = std::array::from_fn(|l| weights[l] * (1.0 - ratios[l]));
-            let probability = (after[0] + after[1]) / (weights[0] + weights[1]);
+            let after: [f64; N] = std::array::from_fn(|l| weights[l] * (1.0 - ratios[l]));
+            let probability = after.iter().sum::<f64>() / weights.iter().sum::<f64>();
             weights = after.map(|weight| weight / probability);
         }
-        Flight::Escaped { weights }
+        SpectralFlight::Escaped { weights }
     }
-    fn admits(&self, _field: &Spectrum, _s: f64, _sigma_t: &[f64; 2]) -> bool {
+    fn admits(&self, _field: &F, _s: f64, _sigma_t: &[f64; N]) -> bool {
         true
     }
 }
@@ -94,6 +94,17 @@ fn weighed(weigh: fn(f64, f64, f64) -> f64, run: Run) -> Rejection {
     judged(&right, Weights::Any, &Weighing(weigh), run)
 }
 
+/// Spectral tracking by the max scheme, without a control, on a test vector.
+fn answered(
+    weigh: fn(f64, f64, f64) -> f64,
+    vector: &Vector<'_>,
+    source: &mut Variates<'_>,
+) -> Option<Answer> {
+    let field = vector.spectrum("spectral_tracking")?;
+    let is_max = (vector.word)("/sampler/scheme")? == "max" && vector.sampler("control").is_none();
+    is_max.then(|| Weighing(weigh).sample(&field, source)).and_then(|flight| vector.flown_together(&flight))
+}
+
 /// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     const PROFILE: &str = "sigma_t 0.75 and 0.5, length 2, majorant 1; the first";
@@ -108,7 +119,8 @@ pub(super) fn twins() -> Vec<Twin> {
             (20_000, Evident::Mean { z: 45.9 }),
             |run| weighed(|ratio, size, _| ratio / size, run),
         )
-        .about(["spectral_tracking"]),
+        .about(["spectral_tracking"])
+        .answers(|vector, source| answered(|ratio, size, _| ratio / size, vector, source)),
         // 9/8 (1 − e^(−5/3))/(5/6) = 1.0950.
         Twin::new(
             "spectral flight, max scheme",
@@ -118,7 +130,10 @@ pub(super) fn twins() -> Vec<Twin> {
             (10_000, Evident::Mean { z: 57.9 }),
             |run| weighed(|ratio, size, other| ratio * (size + other) / other, run),
         )
-        .about(["spectral_tracking"]),
+        .about(["spectral_tracking"])
+        .answers(|vector, source| {
+            answered(|ratio, size, other| ratio * (size + other) / other, vector, source)
+        }),
         // Over n null collisions before: Σ_n w P(n) with w = 2/(1 + 2^n), P(n) = (0.75 · 4^−n + 0.5 · 2^−n)/2 times the
         // probability that a Poisson variate of mean 2 exceeds n: 0.6394 for
         // 0.7769, at a standard deviation of 0.4405.
@@ -133,6 +148,10 @@ pub(super) fn twins() -> Vec<Twin> {
                 judged(&right, Weights::UpTo(2), &ForgetsTheCollision, run)
             },
         )
-        .about(["hero_wavelength"]),
+        .about(["hero_wavelength"])
+        .answers(|vector, source| {
+            let flight = ForgetsTheCollision.sample(&vector.spectrum("hero_wavelength")?, source);
+            vector.flown_together(&flight)
+        }),
     ]
 }

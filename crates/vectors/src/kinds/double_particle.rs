@@ -1,6 +1,7 @@
 //! Ratio tracking and residual ratio tracking: the double particle model at albedo 0 (szirmay-kalos-2017 eq. 12, novak-2014).
 
 use super::{Cases, Kind, LARGEST, Model, given, mistake};
+use crate::moments::{Collision, Moments, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -54,6 +55,13 @@ impl Model for DoubleParticle {
             ("the control's transmittance left out", Slip::NoControl),
         ];
         all.map(|(name, slip)| mistake(name, &Wrong { sigma_samp, control, slip }, script, profile)).into()
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let Self { sigma_samp, control } = *self;
+        let main = -control * profile.length();
+        let at = |_: f64, sigma_t: f64| Collision::always(sigma_samp, 1.0 - (sigma_t - control) / sigma_samp);
+        Some(product("transmittance", profile, profile.s, (main, 0.0), at))
     }
 
     fn stated(&self) -> Value {

@@ -1,6 +1,7 @@
 //! The phase function of henyey-1941, from backward to forward, without a division by g.
 
 use super::{Cases, Kind, LARGEST, Model, mistake, u};
+use crate::moments::Moments;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -59,6 +60,14 @@ impl Model for HenyeyGreenstein {
             ("not divided by 4 pi", Slip::NotPerSteradian),
         ];
         all.map(|(name, slip)| mistake(name, &Wrong { g, slip }, script, profile)).into()
+    }
+
+    fn moments(&self, _profile: Profile) -> Option<Moments> {
+        let (g, variance) = (self.g, (1.0 + 2.0 * self.g * self.g) / 3.0 - self.g * self.g);
+        // Nearer to 1 a mean of cosines is far from normal at any usual number of them.
+        let moments =
+            Moments { of: "cosine", mean: g, variance: Some(variance), fourth: None, lookups: None };
+        (g.abs() < 0.9).then_some(moments)
     }
 
     fn stated(&self) -> Value {

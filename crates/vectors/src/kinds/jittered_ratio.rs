@@ -1,6 +1,7 @@
 //! Jittered ratio tracking: a random alternating series in each stratum.
 
 use super::{Cases, Kind, LARGEST, Model, mistake, u};
+use crate::moments::{Moments, strata};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -65,6 +66,11 @@ impl Model for JitteredRatio {
             ("e/n for e/(n + 1) in the probabilities of orders", Slip::Probability),
         ];
         all.map(|(name, slip)| mistake(name, &Wrong { epsilon, slip }, script, profile)).into()
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let whole = [0.0, profile.length(), 0.0, profile.majorant()];
+        Some(strata(profile, std::iter::once(whole), self.epsilon))
     }
 
     fn stated(&self) -> Value {

@@ -1,17 +1,47 @@
 //! Kinds of estimators, samplers and functions that have vectors: a file each.
 
+mod adaptive_ratio;
+mod bounded_connection;
+mod cells;
+mod collision;
+mod comb;
+mod deflection;
 mod double_particle;
+mod double_particle_cells;
 mod equiangular;
+mod generalised_poisson;
 mod henyey_greenstein;
+mod inversion_flight;
+mod jackknife;
+mod jittered_flight;
 mod jittered_ratio;
+mod jittered_ratio_cells;
+mod line_integral;
+mod mis_weight;
+mod next_flight;
+mod p_series;
+mod path_weights;
+mod phase;
+mod progressive_majorant;
+mod ray_marching;
+mod regular;
+mod residual_cells;
+mod single_particle;
+mod spectral_flight;
 mod spectral_tracking;
+mod telescoping;
+mod tracking_flight;
+mod truncated_exponential;
 mod unbiased_ray_marching;
+mod unbiased_ray_marching_combs;
 mod woodcock;
+mod woodcock_flight;
 
-use crate::case::{Case, Sort, header};
+use crate::case::{Case, Sort, header, stated};
+use crate::moments::Moments;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Binary64, Draw, Outcome, Profile, Run, Script};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// An estimator, a sampler or a function with its parameters, written down over any arithmetic.
 pub(crate) trait Model {
@@ -31,6 +61,11 @@ pub(crate) trait Model {
     /// Runs of ports with a known mistake on the same variates, in doubles.
     fn mistakes(&self, _script: &Script, _profile: Profile) -> Vec<(&'static str, Finished)> {
         Vec::new()
+    }
+
+    /// Exact moments of its score on a profile, for a statistical test.
+    fn moments(&self, _profile: Profile) -> Option<Moments> {
+        None
     }
 
     /// True of what looks up a profile.
@@ -58,16 +93,26 @@ impl Kind {
         (self.cases)()
     }
 
+    /// Parameters with their exact moments: what a header has for a statistical test.
+    #[must_use]
+    pub fn moments(&self) -> Vec<Value> {
+        self.cases().into_iter().filter_map(|case| case.moments).collect()
+    }
+
     /// The file of the kind: a header, then a case a line.
     #[must_use]
     pub fn lines(&self) -> Vec<Value> {
-        let cases = self.cases().into_iter().map(|case| case.json);
-        std::iter::once(header(self.name, self.outputs, self.notes)).chain(cases).collect()
+        let (mut header, cases) = (header(self.name, self.outputs, self.notes), self.cases());
+        let moments: Vec<&Value> = cases.iter().filter_map(|case| case.moments.as_ref()).collect();
+        if !moments.is_empty() {
+            header["moments"] = json!(moments);
+        }
+        std::iter::once(header).chain(cases.into_iter().map(|case| case.json)).collect()
     }
 }
 
 /// The registry of kinds, in the order of their files.
-pub static KINDS: [&Kind; 7] = [
+pub static KINDS: [&Kind; 34] = [
     &double_particle::KIND,
     &woodcock::KIND,
     &jittered_ratio::KIND,
@@ -75,6 +120,33 @@ pub static KINDS: [&Kind; 7] = [
     &spectral_tracking::KIND,
     &equiangular::KIND,
     &henyey_greenstein::KIND,
+    &single_particle::KIND,
+    &double_particle_cells::KIND,
+    &residual_cells::KIND,
+    &jittered_ratio_cells::KIND,
+    &line_integral::KIND,
+    &next_flight::KIND,
+    &p_series::KIND,
+    &generalised_poisson::KIND,
+    &adaptive_ratio::KIND,
+    &progressive_majorant::KIND,
+    &ray_marching::KIND,
+    &unbiased_ray_marching_combs::KIND,
+    &telescoping::KIND,
+    &jackknife::KIND,
+    &regular::KIND,
+    &woodcock_flight::KIND,
+    &tracking_flight::KIND,
+    &inversion_flight::KIND,
+    &jittered_flight::KIND,
+    &spectral_flight::KIND,
+    &phase::KIND,
+    &deflection::KIND,
+    &collision::KIND,
+    &truncated_exponential::KIND,
+    &bounded_connection::KIND,
+    &mis_weight::KIND,
+    &path_weights::KIND,
 ];
 
 /// Cases drawn of one set of parameters.
@@ -94,10 +166,19 @@ impl Cases {
 
     /// Adds cases drawn at random.
     fn draw(&mut self, name: &str, model: &impl Model, profile: Profile) {
-        for number in 0..DRAWN {
+        self.draw_some(DRAWN, name, model, profile);
+    }
+
+    /// Adds so many cases drawn at random, less those that a right port may decide otherwise.
+    fn draw_some(&mut self, count: usize, name: &str, model: &impl Model, profile: Profile) {
+        let first = self.cases.len();
+        for number in 0..count {
             let id = format!("{name}/{number:04}");
             let script = Script::of(&id, MOST_DRAWS);
             self.cases.extend(Case::of(id, Sort::Drawn, model, &script, profile));
+        }
+        if let Some(case) = self.cases.get_mut(first) {
+            case.moments = model.moments(profile).map(|moments| stated(name, model, profile, &moments));
         }
     }
 
@@ -124,6 +205,16 @@ fn mistake(
     profile: Profile,
 ) -> (&'static str, Finished) {
     (name, Finished::of(model, Binary64, script, profile))
+}
+
+/// Runs with each of these mistakes.
+fn mistakes<S: Copy, M: Model>(
+    slips: &[(&'static str, S)],
+    with: impl Fn(S) -> M,
+    script: &Script,
+    profile: Profile,
+) -> Vec<(&'static str, Finished)> {
+    slips.iter().map(|&(name, slip)| mistake(name, &with(slip), script, profile)).collect()
 }
 
 /// The variate below 1.

@@ -1,6 +1,7 @@
 //! Spectral tracking with the history-aware average (kutz-2017): one flight for three wavelengths.
 
 use super::{Cases, Kind, Model, given, mistake, u};
+use crate::moments::Moments;
 use crate::run::Event;
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
@@ -64,6 +65,10 @@ impl Model for SpectralTracking {
             ("the first wavelength decides", Slip::First),
         ];
         all.map(|(name, slip)| mistake(name, &Wrong { sigma_samp, slip }, script, profile)).into()
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        Some(Moments::unbiased("escaped", profile))
     }
 
     fn stated(&self) -> Value {

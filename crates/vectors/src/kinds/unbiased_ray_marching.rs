@@ -1,6 +1,7 @@
 //! Unbiased ray marching (kettunen-2021): a power series in the differences of independent combs.
 
 use super::{Cases, Kind, Model, mistake, u};
+use crate::moments::{Moments, Shifts, second_moment};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -64,34 +65,13 @@ impl Model for UnbiasedRayMarching {
         };
         let comb = Comb { teeth: self.teeth, step, jump };
         let going_on = run.number(1.0 - self.roulette);
-        let mut order = 0;
-        if run.uniform() < going_on {
-            order = 2_u32;
-            while run.uniform() * run.number(f64::from(order + 1)) < run.number(2.0) {
-                order += 1;
-            }
-        }
+        let order = order(run, &going_on);
         let first = comb.thickness(run);
         let mut deviations = vec![run.number(0.0)];
         for _ in 0..order {
             deviations.push(first.clone() - comb.thickness(run));
         }
-        let mut sum = run.number(1.0);
-        if order > 0 {
-            sum = run.number(0.0);
-            for (pivot, own) in deviations.iter().enumerate() {
-                let others = deviations.iter().enumerate().filter(|(i, _)| *i != pivot);
-                let means = symmetric_means(others.map(|(_, other)| other.clone() - own.clone()));
-                let (mut series, mut weight) = (run.number(1.0), run.number(1.0) / going_on.clone());
-                for mean in &means[1..] {
-                    series = series + weight.clone() * mean.clone();
-                    weight = weight * run.number(0.5);
-                }
-                sum = sum + own.exp() * series;
-            }
-            sum = sum / run.number(f64::from(order + 1));
-        }
-        Outcome::of(sum * (-first).exp())
+        Outcome::of(series(&going_on, &deviations) * (-first).exp())
     }
 
     fn takes_functions(&self) -> bool {
@@ -117,6 +97,11 @@ impl Model for UnbiasedRayMarching {
         all.map(wrong).into()
     }
 
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let comb = Shifts::new(profile, self.teeth, self.endpoint_matching);
+        Some(second_moment(&comb, 1.0 - self.roulette))
+    }
+
     fn stated(&self) -> Value {
         json!({ "estimator": {
             "kind": KIND.name,
@@ -125,6 +110,37 @@ impl Model for UnbiasedRayMarching {
             "roulette": self.roulette,
         } })
     }
+}
+
+/// The order of the roulette: 0, or 2 and more.
+pub(super) fn order<A: Arithmetic>(run: &mut Run<'_, A>, going_on: &A::Number) -> u32 {
+    let mut order = 0;
+    if run.uniform() < *going_on {
+        order = 2_u32;
+        while run.uniform() * run.number(f64::from(order + 1)) < run.number(2.0) {
+            order += 1;
+        }
+    }
+    order
+}
+
+/// exp(X_0) times the estimate, from X_0 − X_i of all draws, the first included.
+pub(super) fn series<N: Number>(going_on: &N, deviations: &[N]) -> N {
+    if deviations.len() == 1 {
+        return N::of(1.0);
+    }
+    let mut sum = N::of(0.0);
+    for (pivot, own) in deviations.iter().enumerate() {
+        let others = deviations.iter().enumerate().filter(|(i, _)| *i != pivot);
+        let means = symmetric_means(others.map(|(_, other)| other.clone() - own.clone()));
+        let (mut series, mut weight) = (N::of(1.0), N::of(1.0) / going_on.clone());
+        for mean in &means[1..] {
+            series = series + weight.clone() * mean.clone();
+            weight = weight * N::of(0.5);
+        }
+        sum = sum + own.exp() * series;
+    }
+    sum / N::of(deviations.len() as f64)
 }
 
 /// m_0 … m_N: elementary symmetric means.

@@ -1,6 +1,7 @@
 //! Woodcock tracking as an estimator of transmittance (raab-2008 algorithm 1).
 
 use super::{Cases, Kind, LARGEST, Model, given, mistake, u};
+use crate::moments::{Collision, Moments, product};
 use crate::tolerance::Finished;
 use crate::{Arithmetic, Draw, Number, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
@@ -43,6 +44,12 @@ impl Model for Woodcock {
             ("1 - sigma_t/majorant as the probability of a collision", Slip::Reversed),
         ];
         all.map(|(name, slip)| mistake(name, &slip, script, profile)).into()
+    }
+
+    fn moments(&self, profile: Profile) -> Option<Moments> {
+        let rate = profile.majorant();
+        let at = |_: f64, sigma_t: f64| Collision { rate, goes_on: 1.0 - sigma_t / rate, weight: 1.0 };
+        Some(product("transmittance", profile, profile.s, (0.0, 0.0), at))
     }
 
     fn stated(&self) -> Value {

@@ -4,7 +4,7 @@ use super::chosen;
 use super::verdict::Verdict;
 use clap::{Args, ValueEnum};
 use fairflight_harness::{DONE, Failure, UNSOUND, print};
-use fairflight_vectors::{Case, Layer, Precision, asked, judge};
+use fairflight_vectors::{Case, Layer, Precision, ask_statistics, asked, judge};
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
 
@@ -20,6 +20,9 @@ pub(crate) struct CheckPortArguments {
     /// The layers that the port can be asked, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [LayerWord::Field, LayerWord::Exponentials, LayerWord::Uniforms])]
     pub layers: Vec<LayerWord>,
+    /// So many estimates of each set of parameters whose exact moments are known, from the port's own generator, instead of the layers
+    #[arg(long, value_name = "ESTIMATES", value_parser = clap::value_parser!(u64).range(2..))]
+    pub statistics: Option<u64>,
     /// The program and its arguments: cases on its standard input, an answer a line on its standard output (docs/PORTING.md)
     #[arg(value_name = "COMMAND", required = true, trailing_var_arg = true, allow_hyphen_values = true)]
     pub command: Vec<String>,
@@ -72,6 +75,13 @@ pub(crate) fn check_port(arguments: &CheckPortArguments, stdout: &mut dyn Write)
     let mut port = Port::start(&arguments.command)?;
     let mut sound = true;
     for kind in kinds {
+        if let Some(samples) = arguments.statistics {
+            let answer = |id: &str, asked: &str| port.answer(id, asked);
+            let (text, holds) = ask_statistics(kind, samples, answer)?;
+            print(stdout, &text)?;
+            sound &= holds;
+            continue;
+        }
         let cases = kind.cases();
         for layer in
             Layer::ALL.into_iter().filter(|&layer| arguments.layers.iter().any(|&word| layer == word.into()))

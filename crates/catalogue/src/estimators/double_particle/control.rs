@@ -10,7 +10,7 @@ use fairflight_media::{
     PiecewiseLinear,
 };
 use fairflight_sources::UniformSource;
-use fairflight_transmittance::{Explorers, Tracking};
+use fairflight_transmittance::{Explorers, Tracking, TransmittanceEstimator};
 
 fn double_particle() -> DoubleParticle {
     DoubleParticle { albedo: Albedo::default() }
@@ -61,7 +61,12 @@ pub(super) fn twins() -> Vec<Twin> {
                 let twin = Tracking::new(double_particle(), control, sampling);
                 judged(&field, &twin, theory, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, sampling, control) = vector.tracked("double_particle")?;
+            let control = Misstated { field: control, thickness: |_, _, _| 0.0 };
+            Some(Tracking::new(double_particle(), control, sampling).estimate(field, source).into())
+        }),
         // Every r is zero: the estimate is exp(−τ of the fit), wherever the points fell. The z is measured.
         Twin::new(
             "double particle, explorers",
@@ -78,6 +83,10 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(&field, &right, &also);
                 judged(&field, &Pretending(&FitsItsOwnWalk { sampling }), theory, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, sampling, _) = vector.tracked("double_particle")?;
+            Some(FitsItsOwnWalk { sampling }.draw(field, source).into())
+        }),
     ]
 }

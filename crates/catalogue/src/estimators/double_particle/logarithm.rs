@@ -42,6 +42,11 @@ pub(super) fn twins() -> Vec<Twin> {
                     format!("an optical distance of {depth}; the walk scores {twin} for {ours}"),
                 )
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, sampling, control) = vector.tracked("double_particle")?;
+            let model = DoubleParticle { albedo: Albedo::default() };
+            Some(Tracking::new(model, control, sampling).estimate(field, &mut Printed(source)).into())
+        }),
     ]
 }

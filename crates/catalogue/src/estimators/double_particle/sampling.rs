@@ -3,11 +3,12 @@
 use crate::profiles::unit_cells;
 use crate::twins::trial::{judged, theory_on};
 use crate::twins::{Evident, Twin};
+use crate::vectors::{Seen, Vector};
 use fairflight_collision::{Albedo, DoubleParticle};
 use fairflight_media::{
     Breakpoints, Extinction, InvertOpticalThickness, OpticalThickness, PiecewiseConstant, Vacuum,
 };
-use fairflight_transmittance::Tracking;
+use fairflight_transmittance::{Tracking, TransmittanceEstimator};
 
 /// A piecewise rate that draws as it is and divides by its mean.
 struct DividesByItsMean(PiecewiseConstant);
@@ -39,7 +40,14 @@ fn with_a_hole() -> PiecewiseConstant {
 }
 
 fn tracking<R: InvertOpticalThickness>(sampling: R) -> Tracking<DoubleParticle, Vacuum, R> {
-    Tracking::new(DoubleParticle { albedo: Albedo::default() }, Vacuum::new(2.0), sampling)
+    let length = sampling.length();
+    Tracking::new(DoubleParticle { albedo: Albedo::default() }, Vacuum::new(length), sampling)
+}
+
+/// Profile and rates in cells of a test vector without a control.
+fn in_cells<'v>(vector: &'v Vector<'_>) -> Option<(&'v Seen, PiecewiseConstant)> {
+    let is_bare = vector.numbers("/estimator/control/positions").is_empty();
+    Some((vector.of("double_particle").filter(|_| is_bare)?, vector.rates("/estimator/sigma_samp")?))
 }
 
 /// Lists the twins.
@@ -58,7 +66,11 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(field(), &tracking(rate.clone()), &rate.breakpoints());
                 judged(&field(), &tracking(DividesByItsMean(rate)), theory, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, rates) = in_cells(vector)?;
+            Some(tracking(DividesByItsMean(rates)).estimate(field, source).into())
+        }),
         // E = exp(−1) for exp(−1.25); its variance is that of the first cell, exp(0.5) − 1.
         Twin::new(
             "double particle",
@@ -71,6 +83,14 @@ pub(super) fn twins() -> Vec<Twin> {
                 let theory = theory_on(field(), &twin, &with_a_hole().breakpoints());
                 judged(&field(), &twin, theory, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, _) = in_cells(vector)?;
+            let edges = vector.numbers("/estimator/sigma_samp/edges");
+            let mut values = vector.numbers("/estimator/sigma_samp/values");
+            *values.last_mut()? = 0.0;
+            let hole = PiecewiseConstant::new(edges, values).ok()?;
+            Some(tracking(hole).estimate(field, source).into())
+        }),
     ]
 }

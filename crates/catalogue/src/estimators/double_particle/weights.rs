@@ -3,10 +3,11 @@
 use crate::profiles::constant;
 use crate::twins::trial::{judged, theory_on};
 use crate::twins::{Evident, Rejection, Twin};
+use crate::vectors::{Answer, Variates, Vector};
 use fairflight_collision::{Albedo, Branch, CollisionModel, DoubleParticle};
 use fairflight_laws::{Run, collision};
 use fairflight_media::{Constant, Vacuum};
-use fairflight_transmittance::Tracking;
+use fairflight_transmittance::{Tracking, TransmittanceEstimator};
 
 fn right() -> DoubleParticle {
     DoubleParticle { albedo: Albedo::default() }
@@ -48,6 +49,12 @@ fn wrong_weight(weight: fn(f64) -> f64, sampling: f64, run: Run) -> Rejection {
     Rejection { rejected: rejection.rejected && exact.is_err(), ..rejection }
 }
 
+/// The same on a test vector.
+fn answered(weight: fn(f64) -> f64, vector: &Vector<'_>, source: &mut Variates<'_>) -> Option<Answer> {
+    let (field, sampling, control) = vector.tracked("double_particle")?;
+    Some(Tracking::new(WrongWeight(weight), control, sampling).estimate(field, source).into())
+}
+
 /// Lists the twins.
 pub(super) fn twins() -> Vec<Twin> {
     vec![
@@ -59,7 +66,8 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 2, sigma_samp 3/4",
             (50_000, Evident::Mean { z: 105.0 }),
             |run| wrong_weight(|r| (1.0 - r).abs(), 0.75, run),
-        ),
+        )
+        .answers(|vector, source| answered(|r| (1.0 - r).abs(), vector, source)),
         // E = exp(−σ_samp L) where r > 1: exp(−1.5) for exp(−2).
         Twin::new(
             "double particle",
@@ -68,6 +76,7 @@ pub(super) fn twins() -> Vec<Twin> {
             "sigma_t 1, length 2, sigma_samp 3/4",
             (50_000, Evident::Mean { z: 39.6 }),
             |run| wrong_weight(|r| (1.0 - r).max(0.0), 0.75, run),
-        ),
+        )
+        .answers(|vector, source| answered(|r| (1.0 - r).max(0.0), vector, source)),
     ]
 }

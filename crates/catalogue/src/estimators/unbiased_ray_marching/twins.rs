@@ -3,6 +3,7 @@
 use crate::checks::LAWFUL;
 use crate::twins::trial::{Wrong, judged_as};
 use crate::twins::{Evident, Twin};
+use crate::vectors::{Seen, Vector};
 use fairflight_media::{AnalyticCosine, Clip, Extinction, PiecewiseConstant, Ray};
 use fairflight_sources::UniformSource;
 use fairflight_transmittance::{Comb, CombShape, Roulette, SymmetricMeans, UnbiasedRayMarching};
@@ -73,6 +74,16 @@ fn two_values((share, value): (f64, f64)) -> PiecewiseConstant {
     PiecewiseConstant::new(vec![0.0, share, 1.0], vec![value, 0.0]).expect(LAWFUL)
 }
 
+/// Profile, comb and roulette of a test vector of the whole ray and a usual comb.
+fn whole<'v>(vector: &'v Vector<'_>) -> Option<(&'v Seen, Comb, Roulette)> {
+    let field = vector.of("unbiased_ray_marching")?;
+    let (is_matched, segments) = (vector.estimator("endpoint_matching")? == 1.0, vector.estimator("segments"));
+    let shape = if is_matched { CombShape::EndpointMatched } else { CombShape::Uniform };
+    let comb = Comb::new(vector.estimator("teeth")? as u32, shape).ok()?;
+    let roulette = Roulette::new(vector.estimator("roulette")?).ok()?;
+    segments.is_none().then_some((field, comb, roulette))
+}
+
 /// A twin of unbiased ray marching with one tooth on [`two_values`].
 fn on_two_values(
     id: &'static str,
@@ -87,6 +98,10 @@ fn on_two_values(
         let roulette = Roulette::new(stop_probability).expect(LAWFUL);
         let right = UnbiasedRayMarching::new(comb, roulette);
         judged_as(&right, &wrong(Parts::right(comb, roulette)), &two_values(values), run)
+    })
+    .answers(move |vector, source| {
+        let (field, comb, roulette) = whole(vector)?;
+        Some(wrong(Parts::right(comb, roulette)).draw(field, source).into())
     })
 }
 
@@ -134,19 +149,20 @@ fn means_with_pivot(differences: &[f64], means: &mut Vec<f64>) {
 /// A comb whose shift is a length in \[0, 1) and not a share of a step.
 struct ShiftedByALength {
     teeth: u32,
+    roulette: Roulette,
 }
 
 impl<F: Extinction> Wrong<F> for ShiftedByALength {
     fn draw(&self, field: &F, source: &mut impl UniformSource) -> f64 {
         let (length, step) = (field.length(), field.length() / f64::from(self.teeth));
-        let order = right_order(Roulette::KETTUNEN.going_on(), &mut || source.next_uniform());
+        let order = right_order(self.roulette.going_on(), &mut || source.next_uniform());
         let mut thickness = || {
             let shift = source.next_uniform(); // right: times the step
             let teeth = (0..self.teeth).map(|j| (shift + f64::from(j) * step) % length);
             step * teeth.map(|s| field.sigma_t(s)).sum::<f64>()
         };
         let x: Vec<f64> = (0..=order).map(|_| thickness()).collect();
-        averaged_over_pivots(&x, Roulette::KETTUNEN, right_means)
+        averaged_over_pivots(&x, self.roulette, right_means)
     }
 }
 
@@ -201,8 +217,14 @@ pub(super) fn twins() -> Vec<Twin> {
                 let ray = Ray::new(AnalyticCosine::new(1.0).expect(LAWFUL), &clip);
                 let comb = Comb::new(12, CombShape::Uniform).expect(LAWFUL);
                 let right = UnbiasedRayMarching::new(comb, Roulette::KETTUNEN);
-                judged_as(&right, &ShiftedByALength { teeth: 12 }, &ray, run)
+                let wrong = ShiftedByALength { teeth: 12, roulette: Roulette::KETTUNEN };
+                judged_as(&right, &wrong, &ray, run)
             },
-        ),
+        )
+        .answers(|vector, source| {
+            let (field, comb, roulette) = whole(vector)?;
+            let wrong = ShiftedByALength { teeth: comb.teeth(), roulette };
+            (comb.shape() == CombShape::Uniform).then(|| wrong.draw(field, source).into())
+        }),
     ]
 }
