@@ -22,9 +22,9 @@
 //! # Porting
 //!
 //! A model is two lines of a port: the walk of `fairflight-transmittance` multiplies its weight by 1 − r at each look-up ([`DoubleParticle`]: ratio
-//! tracking, residual ratio tracking with a control), or ends where u · majorant < σ_t ([`Woodcock`]). What it makes of given variates is in
-//! `tests/vectors/double_particle.jsonl` and
-//! `tests/vectors/woodcock.jsonl`; loop, traps and the mistakes that a port may make stand in `docs/PORTING.md`.
+//! tracking, residual ratio tracking with a control), or ends where u · majorant < σ_t ([`Woodcock`]). What each model makes of a ratio and a variate
+//! is in `tests/vectors/collision.jsonl`; walks with them in `tests/vectors/double_particle.jsonl`, `tests/vectors/single_particle.jsonl` and
+//! `tests/vectors/woodcock.jsonl`. Loops, traps and the mistakes that a port may make: `docs/PORTING.md`, `docs/porting/transmittance.md`.
 //!
 //! ```
 //! use fairflight_collision::{Albedo, CollisionModel, DoubleParticle};

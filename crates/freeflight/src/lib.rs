@@ -19,10 +19,11 @@
 //!
 //! # Porting
 //!
-//! [`spectral::SpectralTracking`], three wavelengths by one walk: `tests/vectors/spectral_tracking.jsonl` (event, distance, a weight for each
-//! wavelength). A flight by [`Woodcock`] is the walk of the estimator of that name, `tests/vectors/woodcock.jsonl`, whose last look-up is the
-//! distance; distances towards a point light are
-//! `tests/vectors/equiangular.jsonl` (kulla-2012). Loops, traps and precisions: `docs/PORTING.md`.
+//! Event, distance and weights of given variates: `tests/vectors/woodcock_flight.jsonl` ([`Woodcock`], with one majorant or one for each cell),
+//! `tests/vectors/tracking_flight.jsonl` (below and above the extinction, with weights), `tests/vectors/inversion_flight.jsonl`,
+//! `tests/vectors/jittered_flight.jsonl`; of three wavelengths by one walk `tests/vectors/spectral_tracking.jsonl`, and by other schemes
+//! `tests/vectors/spectral_flight.jsonl`. Distances towards a point light are `tests/vectors/equiangular.jsonl` (kulla-2012). Loops, traps and
+//! precisions: `docs/PORTING.md`, `docs/porting/flights.md`.
 //!
 //! ```
 //! use fairflight_freeflight::{Flight, FreeFlight, Woodcock};

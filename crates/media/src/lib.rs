@@ -32,8 +32,8 @@
 //!
 //! The profile of all test vectors is [`PiecewiseLinear`], with nodes that are exact in every precision; in the layer `field` a port needs none,
 //! since the vectors say what each look-up returns. Phase functions: `tests/vectors/henyey_greenstein.jsonl` (cosine and value per steradian, g = ±(1
-//! − 2⁻¹²), ±2⁻²⁰, 0 and between). The page is
-//! `docs/PORTING.md`.
+//! − 2⁻¹²), ±2⁻²⁰, 0 and between), the others `tests/vectors/phase.jsonl`; directions about the incident one `tests/vectors/deflection.jsonl`. The
+//! pages are `docs/PORTING.md` and `docs/porting/flights.md`.
 //!
 //! ```
 //! use fairflight_media::{Certificate, ExpressionProfile, Extinction, Tolerance};
