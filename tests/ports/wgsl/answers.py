@@ -1,6 +1,7 @@
 """Answers cases of the test vectors with the port in fairflight.wgsl, on the first GPU that wgpu finds (a software one will do).
 
     harness check-port --precision binary32 python3 answers.py
+    harness check-port --statistics 1000000 python3 answers.py
 """
 
 import json
@@ -21,17 +22,28 @@ KINDS = {
     "henyey_greenstein": 6,
 }
 OUTPUTS = {"spectral_tracking": 3, "equiangular": 2, "henyey_greenstein": 2}
-LAYERS = {"field": 0, "exponentials": 1, "uniforms": 2}
+LAYERS = {"field": 0, "exponentials": 1, "uniforms": 2, "statistics": 3}
 DISTANCES = 6
 MOST_LOOKUPS = 1000
+# Invocations of a workgroup, and estimates of an invocation at most: a sum of few in single precision.
+WORKGROUP = 64
+MOST_EACH = 64
 
 folder = Path(__file__).parent
 device = wgpu.gpu.request_adapter_sync(power_preference="high-performance").request_device_sync()
 code = "\n".join((folder / name).read_text() for name in ("fairflight.wgsl", "answers.wgsl"))
-pipeline = device.create_compute_pipeline(
-    layout="auto", compute={"module": device.create_shader_module(code=code), "entry_point": "main"}
-)
-output = device.create_buffer(size=4 * (DISTANCES + MOST_LOOKUPS), usage=wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC)
+module = device.create_shader_module(code=code)
+pipelines = {
+    name: device.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": name}) for name in ("main", "statistics")
+}
+
+
+def output(count):
+    """A buffer of so many numbers."""
+    return device.create_buffer(size=4 * count, usage=wgpu.BufferUsage.STORAGE | wgpu.BufferUsage.COPY_SRC)
+
+
+one_answer = output(DISTANCES + MOST_LOOKUPS)
 
 
 def parameters(case):
@@ -55,30 +67,48 @@ def parameters(case):
     return sampler["kind"], 0, [closest, np.sqrt(np.dot(aside, aside)), 0, 0]
 
 
-def answer(case):
+def run(entry, case, workgroups, buffer, statistics=(0, 0, 0)):
+    """Kind of a case, and the numbers that an entry point leaves for it."""
     kind, flag, numbers = parameters(case)
     profile = case.get("profile", {"s": [0, 1], "sigma_t": [0, 0]})
     length = profile["s"][-1] if "profile" in case else case.get("sampler", {}).get("length", 0)
-    draws = [[(draw[1] or 0) * 2.0**-53, draw[2] if len(draw) > 2 else -1] for draw in case["draws"]]
+    draws = [[(draw[1] or 0) * 2.0**-53, draw[2] if len(draw) > 2 else -1] for draw in case.get("draws", [])] or [[0, -1]]
     trace = [step[1] for step in case.get("trace", [])]
     counts = KINDS[kind], LAYERS[case["layer"]], len(profile["s"]), len(draws), len(trace), flag
     majorant = case.get("knowledge", {}).get("majorant", 0)
     inputs = [
-        struct.pack("6I6f", *counts, length, majorant, *numbers),
+        struct.pack("6I6f3I", *counts, length, majorant, *numbers, *statistics),
         np.array([profile["s"], profile["sigma_t"]], np.float32).T.tobytes(),
         np.array(draws, np.float32).tobytes(),
         np.array(trace or [0], np.float32).tobytes(),
     ]
-    buffers = [device.create_buffer_with_data(data=data, usage=wgpu.BufferUsage.STORAGE) for data in inputs] + [output]
-    entries = [{"binding": i, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}} for i, buffer in enumerate(buffers)]
+    buffers = [device.create_buffer_with_data(data=data, usage=wgpu.BufferUsage.STORAGE) for data in inputs] + [buffer]
+    entries = [{"binding": i, "resource": {"buffer": bound, "offset": 0, "size": bound.size}} for i, bound in enumerate(buffers)]
     encoder = device.create_command_encoder()
     shader = encoder.begin_compute_pass()
-    shader.set_pipeline(pipeline)
-    shader.set_bind_group(0, device.create_bind_group(layout=pipeline.get_bind_group_layout(0), entries=entries))
-    shader.dispatch_workgroups(1)
+    shader.set_pipeline(pipelines[entry])
+    shader.set_bind_group(0, device.create_bind_group(layout=pipelines[entry].get_bind_group_layout(0), entries=entries))
+    shader.dispatch_workgroups(workgroups)
     shader.end()
     device.queue.submit([encoder.finish()])
-    found = np.frombuffer(device.queue.read_buffer(output), np.float32)
+    return kind, np.frombuffer(device.queue.read_buffer(buffer), np.float32)
+
+
+def statistics(case):
+    """Mean, variance and look-ups of as many estimates as are asked for."""
+    samples = case["samples"]
+    each = max(k for k in range(1, MOST_EACH + 1) if samples % k == 0)
+    invocations = samples // each
+    workgroups = -(-invocations // WORKGROUP)
+    _, found = run("statistics", case, workgroups, output(3 * invocations), (case["seed"], invocations, each))
+    sums = found.reshape(-1, 3).sum(axis=0, dtype=np.float64)
+    mean = sums[0] / samples
+    variance = (sums[1] - samples * mean * mean) / (samples - 1)
+    return {"id": case["id"], "mean": mean, "variance": variance, "lookups": sums[2] / samples}
+
+
+def answer(case):
+    kind, found = run("main", case, 1, one_answer)
     drawn, lookups, event = (int(number) for number in found[:3])
     said = {"id": case["id"], "value": [float(value) for value in found[3 : 3 + OUTPUTS.get(kind, 1)]], "draws": drawn}
     if "profile" in case:
@@ -90,4 +120,5 @@ def answer(case):
 
 
 for line in sys.stdin:
-    print(json.dumps(answer(json.loads(line))), flush=True)
+    asked = json.loads(line)
+    print(json.dumps(statistics(asked) if asked["layer"] == "statistics" else answer(asked)), flush=True)
