@@ -2,12 +2,16 @@
 
 use super::ray::RayKind;
 use super::tracking::{for_all_rays, of_one_ray, tracking, with_facts};
-use super::{ControlSpec, EstimatorKind, Expected, InScene, Prepared, RayKnown, SamplingSpec, Shadow, Work};
+use super::{
+    AnyControl, AnySampling, ControlSpec, EstimatorKind, Expected, InScene, Prepared, RayKnown, SamplingSpec,
+    Shadow, Work,
+};
 use crate::field::AnyProfile;
 use crate::reader::Node;
 use crate::reader::rule::{Own, Rule};
 use crate::{Failure, kind, words};
 use fairflight_collision::{Albedo, SingleParticle, Version};
+use fairflight_transmittance::Tracking;
 use serde_json::{Value, json};
 
 words! {
@@ -59,7 +63,14 @@ impl EstimatorKind for SingleParticleSpec {
     fn prepare(&self, profile: &AnyProfile) -> Result<Prepared, Failure> {
         let tracking = tracking(self.model(), &self.sigma_samp, &self.control, profile)?;
         let variance = "variance: szirmay-kalos-2017 eq. 16, integrated over the ray";
-        let prepared = Prepared::new("single_particle", profile.trial(tracking.clone()), variance);
+        let trial = match (tracking.control(), tracking.sampling()) {
+            // The usual case: no branch at each look-up, and lanes.
+            (AnyControl::None(none), AnySampling::Constant(rate)) => {
+                profile.trial_in_lanes(Tracking::new(self.model(), *none, *rate))
+            }
+            _ => profile.trial(tracking.clone()),
+        };
+        let prepared = Prepared::new("single_particle", trial, variance);
         Ok(with_facts(prepared, tracking, profile))
     }
 
