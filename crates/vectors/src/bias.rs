@@ -176,6 +176,10 @@ impl Differences {
 mod tests {
     use super::*;
     use crate::{KINDS, Kind};
+    use std::collections::BTreeMap;
+
+    /// Scripts of each set of parameters on which the page measures.
+    const SCRIPTS: usize = 10_000;
 
     fn measured(kind: &str, mistake: &str, parameters: &str) -> Bias {
         let kind: &Kind = KINDS.iter().find(|known| known.name == kind).unwrap();
@@ -216,5 +220,36 @@ mod tests {
         ] {
             assert_eq!(Bias::told(&sets), told);
         }
+    }
+
+    /// What docs/porting/mistakes.md says of the bias of each mistake; of kinds without exact means nothing.
+    #[test]
+    fn the_page_tells_the_bias_of_each_mistake() {
+        let page = include_str!("../../../docs/porting/mistakes.md");
+        let (table, _) = page.split_once("## Wrong twins").unwrap();
+        let mut measured: BTreeMap<(&str, &str), Vec<Bias>> = BTreeMap::new();
+        for kind in KINDS {
+            for bias in kind.biases(SCRIPTS) {
+                measured.entry((kind.name, bias.mistake)).or_default().push(bias);
+            }
+        }
+        let mut wrong = Vec::new();
+        for row in table.lines().filter(|line| line.contains(" of ") && line.starts_with("| ")) {
+            let [kind, mistake, _, bias] =
+                *row.trim_matches('|').split(" | ").map(str::trim).collect::<Vec<_>>()
+            else {
+                continue;
+            };
+            let told = Bias::told(&measured.remove(&(kind, mistake)).unwrap_or_default());
+            if bias != told {
+                wrong.push(format!("{kind}, {mistake}: {told}"));
+            }
+        }
+        wrong.extend(
+            measured
+                .into_iter()
+                .map(|((kind, mistake), sets)| format!("{kind}, {mistake}: {}", Bias::told(&sets))),
+        );
+        assert!(wrong.is_empty(), "docs/porting/mistakes.md is to say\n{}", wrong.join("\n"));
     }
 }
