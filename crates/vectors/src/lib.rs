@@ -29,9 +29,12 @@
 //! Headers state exact moments of each set of parameters, from the law of the estimator by quadrature over the pieces of the profile: [`ask_statistics`] judges
 //! estimates that a port makes from a generator of its own.
 //!
+//! [`Kind::biases`] measures what known mistakes do to those means.
+//!
 //! Logarithms and exponentials of the exact run are rounded once. They come from no library that a later version of this project may change.
 
 mod arithmetic;
+mod bias;
 mod case;
 mod check;
 pub mod kinds;
@@ -45,6 +48,7 @@ mod statistics;
 mod tolerance;
 
 pub use arithmetic::{Arithmetic, Binary64, Exact};
+pub use bias::Bias;
 pub use case::{Case, FORMAT, Mistaken, VERSION, header};
 pub use check::{Fault, Layer, asked, judge};
 pub use kinds::{KINDS, Kind};

@@ -62,13 +62,20 @@ impl Precision {
 pub struct Noise {
     state: Cell<u64>,
     precision: Precision,
+    /// The size of all errors, of those of the precision \[1\].
+    share: f64,
 }
 
 impl Noise {
     /// Errors of this precision, the run of this number.
     #[must_use]
     pub fn new(precision: Precision, number: u64) -> Self {
-        Self { state: Cell::new(number.wrapping_mul(0xD134_2543_DE82_EF95)), precision }
+        Self { state: Cell::new(number.wrapping_mul(0xD134_2543_DE82_EF95)), precision, share: 1.0 }
+    }
+
+    /// None: doubles with the functions of a library, whose bits are the same on every machine.
+    pub(crate) fn none() -> Self {
+        Self { share: 0.0, ..Self::new(Precision::Binary64, 0) }
     }
 
     /// Either sign.
@@ -77,7 +84,7 @@ impl Noise {
         self.state.set(next);
         let mixed = (next ^ (next >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        if mixed >> 63 == 0 { 1.0 } else { -1.0 }
+        if mixed >> 63 == 0 { self.share } else { -self.share }
     }
 
     fn off(&self, x: f64, relative: f64) -> f64 {

@@ -13,6 +13,8 @@ pub enum Draw {
         /// The exponential.
         exponential: OnceCell<Precise>,
     },
+    /// u = k 2^−53, and −ln(1 − u) by a library in doubles: of scripts in great number, which are no cases.
+    Rounded(u64),
     /// An exponential that no lattice variate has: of ties.
     Given(f64),
 }
@@ -38,6 +40,15 @@ impl Script {
     /// hash of the name), so that no change of another stream moves a vector.
     #[must_use]
     pub fn of(name: &str, draws: usize) -> Self {
+        Self::drawn(name, draws, Draw::lattice)
+    }
+
+    /// The same variates with exponentials by a library in doubles.
+    pub(crate) fn rounded(name: &str, draws: usize) -> Self {
+        Self::drawn(name, draws, Draw::Rounded)
+    }
+
+    fn drawn(name: &str, draws: usize, of: fn(u64) -> Draw) -> Self {
         let hash = name.bytes().fold(0xCBF2_9CE4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
         });
@@ -46,7 +57,7 @@ impl Script {
             state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
             let mixed = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
             let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            Draw::lattice(((mixed ^ (mixed >> 31)) >> 40) * STEP)
+            of(((mixed ^ (mixed >> 31)) >> 40) * STEP)
         };
         Self::new((0..draws).map(draw).collect())
     }
@@ -80,7 +91,7 @@ impl Draw {
     #[must_use]
     pub fn k(&self) -> Option<u64> {
         match self {
-            Self::Lattice { k, .. } => Some(*k),
+            Self::Lattice { k, .. } | Self::Rounded(k) => Some(*k),
             Self::Given(_) => None,
         }
     }
@@ -90,6 +101,7 @@ impl Draw {
     pub fn exponential(&self) -> Precise {
         match self {
             Self::Lattice { k, exponential } => exponential.get_or_init(|| Precise::exponential(*k)).clone(),
+            Self::Rounded(k) => Precise::of(-libm::log1p(-(*k as f64) * 2.0_f64.powi(-53))),
             Self::Given(exponential) => Precise::of(*exponential),
         }
     }

@@ -106,7 +106,7 @@ impl Tolerance {
 }
 
 /// The next number of two decimal digits that is not below, x ≥ 0.
-fn rounded_up(x: f64) -> f64 {
+pub(crate) fn rounded_up(x: f64) -> f64 {
     let nearest = format!("{x:.1e}");
     let rounded: f64 = nearest.parse().expect("a number that was just written");
     if rounded >= x {

@@ -97,12 +97,10 @@ impl Model for AdaptiveRatio {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |majorant, floor| AdaptiveRatio { majorant, floor, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     cases.draw_some(24, &name("1-0.125"), &of(1.0, 0.125), Profile::SMOKE);
     cases.draw_some(24, &name("1.25-0.5"), &of(1.25, 0.5), Profile::SMOKE);
     cases.tie(&name("tie/end"), &of(1.0, 0.125), Profile::SMOKE, vec![given(8.0)]);
-    cases.cases
 }

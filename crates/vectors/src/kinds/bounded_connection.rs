@@ -100,8 +100,7 @@ impl Model for Connection {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     for (name, normal, exponent) in [
         ("medium", None, 0),
         ("medium-near", None, -3),
@@ -111,5 +110,4 @@ fn cases() -> Vec<super::Case> {
         let model = Connection { normal, exponent, bound: 2.0, slip: None };
         cases.draw_some(10, &format!("{}/{name}", KIND.name), &model, Profile::EVEN);
     }
-    cases.cases
 }

@@ -124,8 +124,7 @@ impl Model for Collision {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |sort, albedo, r| Collision { sort, albedo, r, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for r in [-0.5, 0.25, 1.0, 1.75] {
@@ -149,5 +148,4 @@ fn cases() -> Vec<super::Case> {
     cases.tie(&name("tie/transmitted"), &terminating, Profile::EVEN, vec![u(0.625)]);
     let nothing = of(Sort::Single(Version::NonTerminating), 0.0, 1.0);
     cases.tie(&name("tie/nothing-left"), &nothing, Profile::EVEN, vec![u(0.0)]);
-    cases.cases
 }

@@ -85,8 +85,7 @@ impl Model for Deflection {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     // Of unit length to the last digit: quadruples of Pythagoras over a power of two are none, so that axes and 0.6, 0.8 must do.
     for (name, incident) in [
         ("down", [0.0, 0.0, -1.0]),
@@ -97,5 +96,4 @@ fn cases() -> Vec<super::Case> {
         let model = Deflection { k: 0.5, incident, slip: None };
         cases.draw_some(8, &format!("{}/{name}", KIND.name), &model, Profile::EVEN);
     }
-    cases.cases
 }

@@ -116,8 +116,7 @@ impl Model for Wrong {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let at = |sigma_samp, control| DoubleParticle { sigma_samp, control };
     for (name, model) in [
         ("1", at(1.0, 0.0)),
@@ -143,5 +142,4 @@ fn cases() -> Vec<super::Case> {
         Profile::SMOKE,
         vec![Draw::lattice(0), Draw::lattice(1), Draw::lattice(LARGEST)],
     );
-    cases.cases
 }

@@ -110,8 +110,7 @@ impl Model for InCells {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |control| InCells { sampling: Rates::TWO, control, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     cases.draw_some(20, &name("two"), &of(None), Profile::SMOKE);
@@ -119,5 +118,4 @@ fn cases() -> Vec<super::Case> {
     // 5/2 of depth in the first cell, 33/8 in the second.
     cases.tie(&name("tie/border"), &of(None), Profile::SMOKE, vec![given(2.5), given(4.125)]);
     cases.tie(&name("tie/end"), &of(None), Profile::SMOKE, vec![given(1.0), given(5.625)]);
-    cases.cases
 }

@@ -108,8 +108,7 @@ impl Model for Wrong {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let near = 2.0_f64.powi(-10);
     for (name, light) in [
         ("beside", [1.5, 2.0, 7.0]),
@@ -124,5 +123,4 @@ fn cases() -> Vec<super::Case> {
         let name = format!("{}/extreme/{name}-variate", KIND.name);
         cases.extreme(&name, &beside, Profile::EVEN, vec![Draw::lattice(k)]);
     }
-    cases.cases
 }

@@ -73,8 +73,7 @@ impl Model for GeneralisedPoisson {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |pivot, rate| GeneralisedPoisson { pivot, rate, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     cases.draw_some(20, &name("8-4"), &of(8.0, 4.0), Profile::SMOKE);
@@ -82,5 +81,4 @@ fn cases() -> Vec<super::Case> {
     let equal = of(4.0, 4.0);
     cases.tie(&name("tie/order-0"), &equal, Profile::SMOKE, vec![given(4.0)]);
     cases.tie(&name("tie/order-1"), &equal, Profile::SMOKE, vec![given(1.0), given(3.0), u(0.25)]);
-    cases.cases
 }

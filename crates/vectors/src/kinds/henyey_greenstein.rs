@@ -118,8 +118,7 @@ impl Model for Wrong {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let (tiny, far) = (2.0_f64.powi(-20), 1.0 - 2.0_f64.powi(-12));
     for g in [0.75, -0.5, tiny, -tiny, far] {
         cases.draw(&format!("{}/{g}", KIND.name), &HenyeyGreenstein { g }, Profile::EVEN);
@@ -134,5 +133,4 @@ fn cases() -> Vec<super::Case> {
         let name = format!("{}/extreme/{name}-variate", KIND.name);
         cases.extreme(&name, &HenyeyGreenstein { g }, Profile::EVEN, vec![Draw::lattice(k)]);
     }
-    cases.cases
 }

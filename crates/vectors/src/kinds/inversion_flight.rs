@@ -123,8 +123,7 @@ impl Model for Flight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let name = |name: &str| format!("{}/{name}", KIND.name);
     let of = |is_regular| Flight { is_regular, slip: None };
     cases.draw_some(24, &name("smoke"), &of(false), Profile::SMOKE);
@@ -136,5 +135,4 @@ fn cases() -> Vec<super::Case> {
         let draws = vec![Draw::lattice(k)];
         cases.extreme(&name(&format!("extreme/{end}-variate")), &of(false), Profile::RAMP, draws);
     }
-    cases.cases
 }

@@ -80,8 +80,7 @@ impl Model for Jackknife {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     for teeth in [3, 8] {
         let model = Jackknife { teeth, slip: None };
         cases.draw_some(16, &format!("{}/{teeth}", KIND.name), &model, Profile::SMOKE);
@@ -89,5 +88,4 @@ fn cases() -> Vec<super::Case> {
     let draws = vec![Draw::lattice(0), Draw::lattice(LARGEST)];
     let model = Jackknife { teeth: 3, slip: None };
     cases.extreme(&format!("{}/extreme/both-ends", KIND.name), &model, Profile::SMOKE, draws);
-    cases.cases
 }

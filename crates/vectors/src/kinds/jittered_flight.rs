@@ -96,8 +96,7 @@ impl Model for Flight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |epsilon| Flight { epsilon, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for epsilon in [1.0, 0.5] {
@@ -112,5 +111,4 @@ fn cases() -> Vec<super::Case> {
     cases.tie(&name("tie/accepted-at-the-border"), &of(0.5), Profile::EVEN, draws);
     let draws = vec![u(0.5), u(0.25), given(0.25)];
     cases.tie(&name("tie/survives-at-the-border"), &of(0.5), Profile::EVEN, draws);
-    cases.cases
 }

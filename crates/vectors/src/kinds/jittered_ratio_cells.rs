@@ -98,8 +98,7 @@ impl Model for InCells {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     for (name, cells, epsilon, profile) in [
         ("smoke-1", Bounds::SMOKE, 1.0, Profile::SMOKE),
         ("smoke-0.5", Bounds::SMOKE, 0.5, Profile::SMOKE),
@@ -108,5 +107,4 @@ fn cases() -> Vec<super::Case> {
         let model = InCells { cells, epsilon, slip: None };
         cases.draw_some(12, &format!("{}/{name}", KIND.name), &model, profile);
     }
-    cases.cases
 }

@@ -129,8 +129,7 @@ impl Model for LineIntegral {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     for (name, majorant, splits, profile) in [
         ("hill-2", 2.0, 2, Profile::HILL),
         ("smoke-4", 1.25, 4, Profile::SMOKE),
@@ -139,5 +138,4 @@ fn cases() -> Vec<super::Case> {
         let model = LineIntegral { majorant, splits, slip: None };
         cases.draw_some(16, &format!("{}/{name}", KIND.name), &model, profile);
     }
-    cases.cases
 }

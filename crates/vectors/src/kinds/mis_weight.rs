@@ -112,8 +112,7 @@ impl Model for Weight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |heuristic, exponents| Weight { heuristic, exponents, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for (parameters, heuristic, exponents) in [
@@ -128,5 +127,4 @@ fn cases() -> Vec<super::Case> {
     let equal = || vec![super::u(0.25), super::u(0.25)];
     cases.tie(&name("tie/maximum"), &of(Heuristic::Maximum, [3, 3]), Profile::EVEN, equal());
     cases.tie(&name("tie/power"), &of(Heuristic::Power, [3, 3]), Profile::EVEN, equal());
-    cases.cases
 }

@@ -37,10 +37,11 @@ mod unbiased_ray_marching_combs;
 mod woodcock;
 mod woodcock_flight;
 
+use crate::bias::{Bias, Biases};
 use crate::case::{Case, Sort, header, stated};
 use crate::moments::Moments;
 use crate::tolerance::Finished;
-use crate::{Arithmetic, Binary64, Draw, Outcome, Profile, Run, Script};
+use crate::{Arithmetic, Draw, Noise, Outcome, Profile, Run, Script};
 use serde_json::{Value, json};
 
 /// An estimator, a sampler or a function with its parameters, written down over any arithmetic.
@@ -83,20 +84,30 @@ pub struct Kind {
     pub outputs: &'static [&'static str],
     /// Facts that decide bits or traps, by name.
     pub notes: &'static [(&'static str, &'static str)],
-    cases: fn() -> Vec<Case>,
+    cases: fn(&mut Cases),
 }
 
 impl Kind {
     /// All cases, in the order of their file.
     #[must_use]
     pub fn cases(&self) -> Vec<Case> {
-        (self.cases)()
+        let mut cases = Cases::new();
+        (self.cases)(&mut cases);
+        cases.cases
     }
 
     /// Parameters with their exact moments: what a header has for a statistical test.
     #[must_use]
     pub fn moments(&self) -> Vec<Value> {
         self.cases().into_iter().filter_map(|case| case.moments).collect()
+    }
+
+    /// The bias of each known mistake at each set of parameters with an exact mean, measured on so many scripts of variates drawn at random.
+    #[must_use]
+    pub fn biases(&self, scripts: usize) -> Vec<Bias> {
+        let mut cases = Cases { biases: Some(Biases::new(scripts, self.outputs)), ..Cases::new() };
+        (self.cases)(&mut cases);
+        cases.biases.map_or_else(Vec::new, Biases::found)
     }
 
     /// The file of the kind: a header, then a case a line.
@@ -152,16 +163,19 @@ pub static KINDS: [&Kind; 34] = [
 /// Cases drawn of one set of parameters.
 const DRAWN: usize = 60;
 /// Variates that one case may draw.
-const MOST_DRAWS: usize = 400;
+pub(crate) const MOST_DRAWS: usize = 400;
 
 /// Cases under a name KIND/PARAMETERS.
+#[derive(Debug)]
 struct Cases {
     cases: Vec<Case>,
+    /// Instead of cases, the biases of mistakes at the parameters of those drawn at random.
+    biases: Option<Biases>,
 }
 
 impl Cases {
     fn new() -> Self {
-        Self { cases: Vec::new() }
+        Self { cases: Vec::new(), biases: None }
     }
 
     /// Adds cases drawn at random.
@@ -171,6 +185,10 @@ impl Cases {
 
     /// Adds so many cases drawn at random, less those that a right port may decide otherwise.
     fn draw_some(&mut self, count: usize, name: &str, model: &impl Model, profile: Profile) {
+        if let Some(biases) = &mut self.biases {
+            biases.measure(name, model, profile);
+            return;
+        }
         let first = self.cases.len();
         for number in 0..count {
             let id = format!("{name}/{number:04}");
@@ -193,18 +211,20 @@ impl Cases {
     }
 
     fn by_hand(&mut self, name: &str, sort: Sort, model: &impl Model, profile: Profile, draws: Vec<Draw>) {
-        self.cases.extend(Case::of(name.to_owned(), sort, model, &Script::new(draws), profile));
+        if self.biases.is_none() {
+            self.cases.extend(Case::of(name.to_owned(), sort, model, &Script::new(draws), profile));
+        }
     }
 }
 
-/// A mistake of this name: what the model makes of the same variates in doubles.
+/// A mistake of this name: what the model makes of the same variates in doubles, with functions of a library as ports have them.
 fn mistake(
     name: &'static str,
     model: &impl Model,
     script: &Script,
     profile: Profile,
 ) -> (&'static str, Finished) {
-    (name, Finished::of(model, Binary64, script, profile))
+    (name, Finished::of(model, &Noise::none(), script, profile))
 }
 
 /// Runs with each of these mistakes.

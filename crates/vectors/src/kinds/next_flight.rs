@@ -210,8 +210,7 @@ impl Model for NextFlight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let name = |name: &str| format!("{}/{name}", KIND.name);
     let of = |version, majorant| NextFlight { version, majorant, slip: None };
     for (parameters, model) in [
@@ -230,5 +229,4 @@ fn cases() -> Vec<super::Case> {
     // At 2^−8, σ_t is 0.2529; 256 levels take the variate 0.2534 for 1/4.
     let draws = vec![given(2.0_f64.powi(-8)), Draw::uniform(0.25 + 7.0 * 2.0_f64.powi(-11)), given(8.0)];
     cases.tie(&name("tie/between-two-of-256-levels"), &delta, Profile::SMOKE, draws);
-    cases.cases
 }

@@ -241,8 +241,7 @@ impl Model for PSeries {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let name = |name: &str| format!("{}/{name}", KIND.name);
     let of = |version, pivot| PSeries { version, pivot, slip: None };
     for (parameters, model) in [
@@ -258,5 +257,4 @@ fn cases() -> Vec<super::Case> {
     cases.extreme(&name("tie/order-2-at-the-border"), &one, Profile::EVEN, vec![u(0.5), u(0.25), u(0.5)]);
     let draws = vec![Draw::lattice(LARGEST), Draw::lattice(0), Draw::lattice(LARGEST)];
     cases.extreme(&name("extreme/largest-variate"), &one, Profile::EVEN, draws);
-    cases.cases
 }

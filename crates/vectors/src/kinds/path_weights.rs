@@ -123,8 +123,7 @@ impl Model for Weights {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let near = [[0, 1], [-1, 0], [1, 0], [0, 0]];
     let small = [[-40, -39], [-38, -40], [-41, -40], [-39, -39]];
     let name = |name: &str| format!("{}/{name}", KIND.name);
@@ -141,5 +140,4 @@ fn cases() -> Vec<super::Case> {
     let equal = (0..8).map(|_| u(0.5)).collect();
     let model = Weights { heuristic: Heuristic::Maximum, exponents: [[0, 0]; 4], slip: None };
     cases.tie(&name("tie/all-equal"), &model, Profile::EVEN, equal);
-    cases.cases
 }

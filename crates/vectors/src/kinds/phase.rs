@@ -178,8 +178,7 @@ impl Model for Phase {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |function| Phase { function, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     let tiny = 2.0_f64.powi(-20);
@@ -204,5 +203,4 @@ fn cases() -> Vec<super::Case> {
     }
     let middle = vec![u(0.5)];
     cases.extreme(&name("extreme/rayleigh-middle"), &of(Function::Rayleigh), Profile::EVEN, middle);
-    cases.cases
 }

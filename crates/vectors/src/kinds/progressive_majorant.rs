@@ -84,8 +84,7 @@ impl Model for ProgressiveMajorant {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |start| ProgressiveMajorant { start, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for start in [0.25, 0.625] {
@@ -94,5 +93,4 @@ fn cases() -> Vec<super::Case> {
     // σ_t = 1/2 everywhere: a guess of that is a majorant, and every factor 0.
     let draws = vec![given(1.0), given(1.0), given(2.0), given(2.0)];
     cases.tie(&name("tie/guess-not-exceeded"), &of(0.5), Profile::EVEN, draws);
-    cases.cases
 }

@@ -87,8 +87,7 @@ impl Model for RayMarching {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |steps, jitter| RayMarching { steps, jitter, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for (parameters, steps) in [("jittered-5", 5), ("jittered-8", 8)] {
@@ -101,5 +100,4 @@ fn cases() -> Vec<super::Case> {
         let draws = vec![Draw::lattice(k)];
         cases.extreme(&name(&format!("extreme/{end}-variate")), &of(4, true), Profile::SMOKE, draws);
     }
-    cases.cases
 }

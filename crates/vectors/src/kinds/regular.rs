@@ -62,10 +62,8 @@ impl Model for Regular {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     for (name, profile) in [("smoke", Profile::SMOKE), ("even", Profile::EVEN), ("ramp", Profile::RAMP)] {
         cases.draw_some(1, &format!("{}/{name}", KIND.name), &Regular { slip: None }, profile);
     }
-    cases.cases
 }

@@ -111,8 +111,7 @@ impl Model for ResidualCells {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for rate in [1.0, 0.5, 2.0] {
         let model = ResidualCells { cells: Bounds::SMOKE, rate, slip: None };
@@ -122,5 +121,4 @@ fn cases() -> Vec<super::Case> {
     let model = ResidualCells { cells: Bounds::EVEN, rate: 1.0, slip: None };
     cases.tie(&name("tie/end-of-a-cell"), &model, Profile::EVEN, vec![given(0.75)]);
     cases.tie(&name("tie/start-of-a-cell"), &model, Profile::EVEN, vec![given(0.0), given(2.0)]);
-    cases.cases
 }

@@ -148,8 +148,7 @@ impl Model for SingleParticle {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |version, albedo, sigma_samp, control| SingleParticle {
         version,
         albedo,
@@ -180,5 +179,4 @@ fn cases() -> Vec<super::Case> {
     tie("tie/end", &one, vec![given(8.0)]);
     let draws = vec![Draw::lattice(1), Draw::lattice(0), Draw::lattice(LARGEST)];
     cases.extreme(&name("extreme/largest-variate"), &terminating, Profile::SMOKE, draws);
-    cases.cases
 }

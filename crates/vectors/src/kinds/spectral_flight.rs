@@ -266,8 +266,7 @@ impl Model for Flight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |sampler, sigma_samp| Flight { sampler, sigma_samp, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     let separate = Sampler::Separate { majorants: [1.0, 0.5, 0.25] };
@@ -285,5 +284,4 @@ fn cases() -> Vec<super::Case> {
     let draws = vec![u(0.0), crate::Draw::lattice(0), u(0.25), given(8.0)];
     cases.tie(&name("tie/hero-at-the-border"), &hero, Profile::SMOKE, draws);
     cases.tie(&name("tie/end"), &of(separate, 1.0), Profile::SMOKE, vec![u(0.0), given(8.0)]);
-    cases.cases
 }

@@ -137,8 +137,7 @@ impl Model for Wrong {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     for sigma_samp in [1.0, 1.5] {
         let name = format!("{}/{sigma_samp}", KIND.name);
         cases.draw(&name, &SpectralTracking { sigma_samp }, Profile::SMOKE);
@@ -148,5 +147,4 @@ fn cases() -> Vec<super::Case> {
     let name = |name: &str| format!("{}/tie/{name}", KIND.name);
     cases.tie(&name("end"), &one, Profile::SMOKE, vec![given(8.0)]);
     cases.tie(&name("vacuum"), &one, Profile::SMOKE, vec![given(2.0), u(0.0), given(6.0)]);
-    cases.cases
 }

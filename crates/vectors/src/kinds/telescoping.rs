@@ -159,13 +159,11 @@ impl Model for Telescoping {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |teeth, shape| Telescoping { teeth, level_ratio: 0.625, shape, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     cases.draw_some(20, &name("2"), &of(2, Shape::Uniform), Profile::SMOKE);
     cases.draw_some(16, &name("3-matched"), &of(3, Shape::Matched), Profile::SMOKE);
     let draws = vec![u(0.625), u(0.625 - 2.0_f64.powi(-24)), u(0.5)];
     cases.tie(&name("tie/level-1-at-the-border"), &of(2, Shape::Uniform), Profile::EVEN, draws);
-    cases.cases
 }

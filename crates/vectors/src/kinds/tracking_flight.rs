@@ -144,8 +144,7 @@ impl Model for Flight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |version, sigma_samp, control| Flight { version, sigma_samp, control, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     for (parameters, model) in [
@@ -167,5 +166,4 @@ fn cases() -> Vec<super::Case> {
     // Both at 2: the control's collision counts, and nothing is looked up.
     tie("tie/both-at-once", &race, vec![given(0.5), given(2.0)]);
     tie("tie/control-at-the-end", &race, vec![given(2.0), given(8.0)]);
-    cases.cases
 }

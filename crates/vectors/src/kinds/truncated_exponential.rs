@@ -78,8 +78,7 @@ impl Model for Truncated {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |rate, length| Truncated { rate, length, beyond: 0.75 * length, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     let thin = 2.0_f64.powi(-30);
@@ -90,5 +89,4 @@ fn cases() -> Vec<super::Case> {
         let draws = vec![Draw::lattice(k)];
         cases.extreme(&name(&format!("extreme/{end}-variate")), &of(0.5, 1.0), Profile::EVEN, draws);
     }
-    cases.cases
 }

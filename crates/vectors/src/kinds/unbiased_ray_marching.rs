@@ -258,8 +258,7 @@ impl Model for Wrong {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |teeth, endpoint_matching, roulette| UnbiasedRayMarching { teeth, endpoint_matching, roulette };
     for (name, model) in [
         ("8", of(8, false, 0.9)),
@@ -279,5 +278,4 @@ fn cases() -> Vec<super::Case> {
         Profile::EVEN,
         vec![u(0.25), u(0.25), u(0.5), u(0.0), u(0.25), u(0.5), u(0.75)],
     );
-    cases.cases
 }

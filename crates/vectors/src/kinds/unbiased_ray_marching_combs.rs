@@ -130,8 +130,7 @@ impl Model for InSegments {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |teeth, shape, segments| InSegments { teeth, shape, segments, roulette: 0.5, slip: None };
     for (name, model) in [
         ("bernoulli-2", of(5, Shape::Bernoulli2, 1)),
@@ -142,5 +141,4 @@ fn cases() -> Vec<super::Case> {
     ] {
         cases.draw_some(10, &format!("{}/{name}", KIND.name), &model, Profile::SMOKE);
     }
-    cases.cases
 }

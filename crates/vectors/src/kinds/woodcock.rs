@@ -87,8 +87,7 @@ impl Model for Slip {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     cases.draw(&format!("{}/smoke", KIND.name), &Woodcock, Profile::SMOKE);
     cases.draw(&format!("{}/even", KIND.name), &Woodcock, Profile::EVEN);
     let mut tie = |name: &str, draws| {
@@ -107,5 +106,4 @@ fn cases() -> Vec<super::Case> {
         Profile::SMOKE,
         vec![Draw::lattice(1), largest(), largest()],
     );
-    cases.cases
 }

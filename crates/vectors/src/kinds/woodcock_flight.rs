@@ -89,8 +89,7 @@ impl Model for Flight {
     }
 }
 
-fn cases() -> Vec<super::Case> {
-    let mut cases = Cases::new();
+fn cases(cases: &mut Cases) {
     let of = |majorant| Flight { majorant, slip: None };
     let name = |name: &str| format!("{}/{name}", KIND.name);
     cases.draw_some(20, &name("one"), &of(ONE), Profile::SMOKE);
@@ -102,5 +101,4 @@ fn cases() -> Vec<super::Case> {
     // At 1/4, behind 5/16 of depth, the majorant of the second cell holds: 5/8 of it is σ_t.
     let draws = vec![given(0.3125), u(0.625), given(1.5)];
     cases.tie(&name("tie/border-of-a-cell"), &of(CELLS), Profile::HILL, draws);
-    cases.cases
 }
