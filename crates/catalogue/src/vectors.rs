@@ -221,7 +221,7 @@ impl Vector<'_> {
 
 type Answering = dyn Fn(&Vector<'_>, &mut Variates<'_>) -> Option<Answer> + Send + Sync;
 
-/// What a wrong twin makes of cases. To a reader of a debug print it is a function.
+/// Answers of a wrong twin to cases. To a reader of a debug print it is a function.
 pub(crate) struct Replay(Box<Answering>);
 
 impl Replay {

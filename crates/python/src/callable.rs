@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What was declared of a callable, beside it.
+/// Declarations about a callable, beside it.
 #[derive(Debug)]
 pub(crate) struct Declared {
     /// σ_t \[1/length\] at a distance, or at each of an array of distances.
@@ -52,7 +52,7 @@ impl Callable {
         self.raised.get().map(|error| error.clone_ref(py))
     }
 
-    /// What the callable returns for distances, into `found`: NaN once it has raised.
+    /// Puts the callable's values at distances into `found`: NaN once it has raised.
     fn ask(&self, s: &[f64], found: &mut [f64]) {
         self.lookups.fetch_add(s.len() as u64, Ordering::Relaxed);
         if self.raised.get().is_none() {

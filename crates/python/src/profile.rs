@@ -60,7 +60,7 @@ impl Profile {
 }
 
 impl Asked {
-    /// What `work` makes of the profile; an exception of the callable comes before whatever followed from it.
+    /// Result of `work` on the profile; an exception of the callable comes before whatever followed from it.
     ///
     /// A callable is asked by this thread, which stays attached to the interpreter; without one other Python threads go on meanwhile.
     pub(crate) fn run<R: Send>(

@@ -222,7 +222,7 @@ mod tests {
         }
     }
 
-    /// What docs/porting/mistakes.md says of the bias of each mistake; of kinds without exact means nothing.
+    /// Words of docs/porting/mistakes.md on the bias of each mistake; none of kinds without exact means.
     #[test]
     fn the_page_tells_the_bias_of_each_mistake() {
         let page = include_str!("../../../docs/porting/mistakes.md");

@@ -29,7 +29,7 @@ impl Layer {
         }
     }
 
-    /// Where the mistake is if this layer fails and none within it.
+    /// Place of the mistake if this layer fails and none within it.
     #[must_use]
     pub fn blames(self) -> &'static str {
         match self {

@@ -13,7 +13,7 @@ pub struct ReportKind {
     pub name: &'static str,
     /// Subject, for `harness list`.
     pub about: &'static str,
-    /// Whether it takes a volume.
+    /// True if it takes a volume.
     pub takes_volume: bool,
     /// Times on two quiet cores, full and quick, as last measured.
     pub takes: [&'static str; 2],

@@ -149,7 +149,7 @@ pub(super) struct Replicas {
     samples_per_pixel: u32,
 }
 
-/// What images tell of their virtual point lights, on average.
+/// Virtual point lights of images, on average.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VirtualLights {
     pub(super) per_set: f64,
@@ -320,7 +320,7 @@ impl Replicas {
         self.first().moments.steps().iter().enumerate().map(of_kind).collect()
     }
 
-    /// What the images told of their virtual point lights, if they had any.
+    /// The virtual point lights that the images told of, if they had any.
     pub(super) fn virtual_lights(&self) -> VirtualLights {
         let n = self.images.len() as f64;
         let mean =
@@ -348,7 +348,7 @@ impl Replicas {
         self.samples_per_pixel
     }
 
-    /// Whether the pixels have more than one sample, so that their variance is known.
+    /// True if the pixels have more than one sample, so that their variance is known.
     pub(super) fn variance_is_known(&self) -> bool {
         self.samples_per_pixel > 1
     }

@@ -19,7 +19,7 @@ pub(super) struct Efficiency {
     pub(super) per_lookup: Measured,
 }
 
-/// What a comparison came to.
+/// Result of a comparison.
 pub(super) struct Speed {
     pub(super) section: Section,
     pub(super) efficiencies: Vec<Efficiency>,

@@ -91,7 +91,7 @@ fn estimators_replay_the_vectors() {
     assert_eq!(files.len(), fairflight_vectors::KINDS.len());
 }
 
-/// What is committed is what the generator writes.
+/// Committed files are those that the generator writes.
 #[test]
 fn the_vectors_are_those_of_the_generator() {
     for kind in fairflight_vectors::KINDS {

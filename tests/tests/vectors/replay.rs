@@ -30,7 +30,7 @@ use fairflight_vpl::Term;
 use glam::{DVec3, dvec3};
 use serde_json::Value;
 
-/// What this project makes of a case.
+/// Answer of this project to a case.
 pub(crate) fn answer(case: &Value, vector: &Vector<'_>, source: &mut impl UniformSource) -> Answer {
     match vector.field {
         Some(field) if case["estimator"].is_object() => estimated(case, vector, field, source),
@@ -276,7 +276,7 @@ fn strategies(case: &Value, heuristic: Heuristic, source: &mut impl UniformSourc
     (0..=steps.len()).map(weight).collect()
 }
 
-/// What is drawn without a profile.
+/// Answers that need no profile.
 fn drawn(case: &Value, vector: &Vector<'_>, source: &mut impl UniformSource) -> Vec<f64> {
     let number = |path: &str| (vector.number)(path).unwrap();
     let parameter = |key: &str| number(&format!("/phase/{key}"));

@@ -47,7 +47,7 @@ fn pixels() -> [[u32; 2]; STREAMS] {
 }
 
 impl<M: Medium, P: PhaseFunction, C: Spectrum, R: SamplingExtinction + Copy> Scene<M, P, C, R> {
-    /// What `run` tells with a tracer of its own.
+    /// Results of `run` with a tracer of its own.
     fn told(
         &self,
         run: impl FnOnce(&mut ParticleTracer<'_, Observed<&M>, &P, C, R>, &mut [Seeded], &mut dyn FnMut(usize, C)),

@@ -4,7 +4,7 @@ use super::quadrature::{integrate, nodes};
 use super::{Moments, transmittance};
 use crate::Profile;
 
-/// What happens at a point of a walk.
+/// Event at a point of a walk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Collision {
     /// Rate of points \[1/length\].

@@ -6,7 +6,7 @@ use crate::measured::Measured;
 use crate::speed_against_error::Speed;
 use fairflight_document::{Claim, ClaimVerdict, measured};
 
-/// What the names of the methods that S9 says win begin with: they differ in the number of samples per ray.
+/// Beginning of the names of the methods that S9 says win: they differ in the number of samples per ray.
 const MIS: &str = "source and scattering";
 
 /// S9: where the point light dominates, MIS of source- and scattering-driven sampling has the least error.

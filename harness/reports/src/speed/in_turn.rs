@@ -60,21 +60,18 @@ impl Row {
         })
     }
 
-    /// A table of rows; `unit` is the work that times are of, `walk` a group of it.
+    /// A table of rows; `unit` is the work that times are of, `walk` a group of it. Lanes are told as times as fast as one after the other.
     pub(super) fn table([id, title, caption]: [&str; 3], [unit, walk]: [&str; 2], rows: &[Self]) -> Table {
-        let (per_walk, bare) = (format!("{unit}s per {walk}"), format!("bare parts of a {unit}"));
-        let million = |row: &&Self| Cell::Number(1e3 / row.one_by_one.value);
-        let names: Vec<String> = InstructionSet::of_this_machine()
-            .map(|set| format!("times as fast in lanes, {}", set.name()))
-            .collect();
+        let per_walk = format!("{unit}s per {walk}");
+        let names: Vec<String> =
+            InstructionSet::of_this_machine().map(|set| format!("lanes, {}", set.name())).collect();
         let gains: Vec<_> = (0..names.len()).map(|at| move |row: &&Self| row.gains[at].cell()).collect();
         let mut columns: Vec<ColumnOf<'_, &Self>> = vec![
             ("", "", &|row| Cell::text(&row.name)),
             (&per_walk, "1", &|row| Cell::Number(row.per_walk)),
-            (&bare, "ns", &|row| row.bare.cell()),
+            ("bare parts", "ns", &|row| row.bare.cell()),
             ("one after the other", "ns", &|row| row.one_by_one.cell()),
-            ("the same / bare parts", "1", &|row| row.over_bare.cell()),
-            ("one after the other", "10⁶/s", &million),
+            ("ratio", "1", &|row| row.over_bare.cell()),
         ];
         columns.extend(
             names.iter().zip(&gains).map(|(name, gain)| -> ColumnOf<'_, &Self> { (name, "1", gain) }),

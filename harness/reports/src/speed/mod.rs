@@ -36,8 +36,8 @@ pub(crate) fn document(run: &Run<'_>) -> Result<Document, Failure> {
         ),
     ];
     let text = "Each row is one run of loops in turn, by the CPU clock of one thread, so that ratios can be compared where a machine's speed drifts. The bare parts are what the work \
-                cannot do without, in a loop of their own. Lanes are sixteen streams side by side, with the bits of one after the other; a column for each instruction set that \
-                this machine has.";
+                cannot do without, in a loop of their own. Times are of one look-up, collision or connection. Lanes are sixteen streams side by side, with the bits of one after the other: a column for each \
+                instruction set that this machine has tells how many times as fast they are.";
     Ok(Document {
         summary,
         sections: vec![
