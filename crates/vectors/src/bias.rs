@@ -105,7 +105,7 @@ impl Biases {
         Self { scripts, outputs, found: Vec::new() }
     }
 
-    /// All.
+    /// Biases measured so far, in the order of their parameter sets.
     pub(crate) fn found(self) -> Vec<Bias> {
         self.found
     }

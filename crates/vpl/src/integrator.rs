@@ -10,7 +10,7 @@ use fairflight_sources::UniformSource;
 /// Virtual point lights that each point on the eye ray is connected with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pairing {
-    /// All.
+    /// Every virtual point light of the set.
     Every,
     /// One, which counts for all; those of the points of one ray are stratified over the set.
     One,
